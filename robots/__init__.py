@@ -1,0 +1,1 @@
+"""Robots and their tools: one package a robot, with its model file."""

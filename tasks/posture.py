@@ -1,0 +1,133 @@
+"""Tasks in joint space: a posture, and damping."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from wbc import PD, Damper, MotionTask, Robot, Rows, State
+from wbc.arrays import Array, frozen
+from wbc.errors import InputError
+
+__all__ = ["Damping", "Posture"]
+
+
+@final
+class Posture(MotionTask):
+    """Joints at a target: e = q - q_d [rad or m], one row a joint.
+
+    Args:
+        target: (n,), or (k,) for k named joints; the robot's home by default.
+        joints: names of the joints; all by default.
+        stiffness: [1/s^2].
+        damping: [1/s], critical by default.
+        name: "posture" by default.
+
+    Raises:
+        InputError: a target that is not finite, unusable gains; at binding, a target
+            of the wrong size for the robot.
+    """
+
+    def __init__(
+        self,
+        target: ArrayLike | None = None,
+        *,
+        joints: Sequence[str] | None = None,
+        stiffness: ArrayLike = 25.0,
+        damping: ArrayLike | None = None,
+        name: str = "posture",
+    ) -> None:
+        super().__init__(name, "rad", (), PD(stiffness, damping))
+        self.joints = None if joints is None else tuple(joints)
+        self._target: Array | None = None
+        if target is not None:
+            self.set_target(target)
+
+    def set_target(self, target: ArrayLike) -> None:
+        """Change the target; a copy is kept.
+
+        Raises:
+            InputError: not finite, or not as long as before.
+        """
+        shape = np.shape(target) if self._target is None else self._target.shape
+        if len(shape) != 1:
+            raise InputError(f"target of '{self.name}' must be of shape (n,).")
+        self._target = frozen(target, shape, f"target of '{self.name}'")
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """The joints' names."""
+        return robot.joint_names if self.joints is None else self.joints
+
+    def check(self, robot: Robot) -> None:
+        """Joints exist and the target has one value for each."""
+        for joint in self.joints or ():
+            robot.joint_index(joint)
+        super().check(robot)
+        names = self.row_names(robot)
+        if self._target is not None and self._target.size != len(names):
+            raise InputError(
+                f"target of '{self.name}' has {self._target.size} values, but robot "
+                f"'{robot.name}' needs {len(names)}: was it made for another robot?"
+            )
+
+    def evaluate(self, state: State, out: Rows) -> None:
+        """Write the rows."""
+        where = _indices(state.robot, self.joints)
+        home = state.robot.q_home[where]
+        target = home if self._target is None else self._target
+        out.error[:] = state.q[where] - target
+        _select(out, where)
+
+
+@final
+class Damping(MotionTask):
+    """Joint velocities that should vanish, one row a joint [rad/s or m/s].
+
+    Args:
+        rate: how fast they do [1/s].
+        joints: names of the joints; all by default.
+        name: "damping" by default.
+
+    Raises:
+        InputError: the rate is negative or not finite.
+    """
+
+    def __init__(
+        self,
+        rate: ArrayLike = 5.0,
+        *,
+        joints: Sequence[str] | None = None,
+        name: str = "damping",
+    ) -> None:
+        super().__init__(name, "rad/s", (), Damper(rate))
+        self.joints = None if joints is None else tuple(joints)
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """The joints' names."""
+        return robot.joint_names if self.joints is None else self.joints
+
+    def check(self, robot: Robot) -> None:
+        """Joints exist."""
+        for joint in self.joints or ():
+            robot.joint_index(joint)
+        super().check(robot)
+
+    def evaluate(self, state: State, out: Rows) -> None:
+        """Write the rows; the error is the velocity itself."""
+        where = _indices(state.robot, self.joints)
+        out.error[:] = state.v[where]
+        _select(out, where)
+
+
+def _indices(robot: Robot, joints: tuple[str, ...] | None) -> list[int]:
+    names = robot.joint_names
+    return [names.index(joint) for joint in (names if joints is None else joints)]
+
+
+def _select(out: Rows, where: list[int]) -> None:
+    out.J[:] = 0.0
+    out.J[np.arange(len(where)), where] = 1.0
+    out.drift[:] = 0.0

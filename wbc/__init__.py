@@ -1,0 +1,63 @@
+"""Whole-body control: composable tasks, strict priorities, two schools of resolution.
+
+A `Robot` gives a `State`; `Task`s say what is wanted; a `Hierarchy` orders them; a
+resolver (`NullSpace` projection, strict `HierarchicalQP`, or `WeightedQP`) turns them
+into a `Solution`; a `Controller` does so once a tick.
+"""
+
+from wbc.certificate import Certificate
+from wbc.controller import Controller, resolve
+from wbc.errors import (
+    InputError,
+    ModelError,
+    SolverError,
+    StaleError,
+    UnknownName,
+    WbcError,
+)
+from wbc.hierarchy import Hierarchy, Level
+from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
+from wbc.law import PD, Damper, Law
+from wbc.nullspace import Damping, NullSpace
+from wbc.qp import backends
+from wbc.resolver import Resolver, Status
+from wbc.robot import Robot
+from wbc.rows import Rows
+from wbc.solution import Solution, TaskReport
+from wbc.state import FrameState, State
+from wbc.task import MotionTask, Task
+from wbc.weighted import WeightedQP
+
+__all__ = [
+    "PD",
+    "Certificate",
+    "Controller",
+    "Damper",
+    "Damping",
+    "FrameState",
+    "HierarchicalQP",
+    "Hierarchy",
+    "HierarchyResult",
+    "InputError",
+    "Law",
+    "Level",
+    "ModelError",
+    "MotionTask",
+    "NullSpace",
+    "Resolver",
+    "Robot",
+    "Rows",
+    "Solution",
+    "SolverError",
+    "StaleError",
+    "State",
+    "Status",
+    "Task",
+    "TaskReport",
+    "UnknownName",
+    "WbcError",
+    "WeightedQP",
+    "backends",
+    "resolve",
+    "solve_hierarchy",
+]

@@ -1,0 +1,197 @@
+"""From a QP backend's answer to a level's exact minimiser.
+
+The cheapest sufficient thing is tried first: no bound matters; the working set of
+the last tick; the backend's set, repaired by a primal active-set method that only
+ever steps from feasible point to feasible point (Nocedal and Wright, ch. 16). The
+origin is always feasible, so the repair also finishes where a backend misleads.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wbc.arrays import Array
+from wbc.errors import SolverError
+from wbc.levelqp import (
+    LevelPoint,
+    LevelProblem,
+    Sides,
+    WorkingSet,
+    faults,
+    minimise_on,
+)
+from wbc.qp import QpBackend
+
+__all__ = ["solve_level"]
+
+PUSHING = 1e-6
+"""A backend's multiplier above this, relative to the largest, marks a held row."""
+INDEPENDENT = 1e-7
+"""A row must keep this much of its norm beside those already held."""
+GUESS_ROUNDS = 3
+STEP = 1e-11
+
+
+def solve_level(
+    problem: LevelProblem, guess: WorkingSet | None, backend: QpBackend
+) -> LevelPoint:
+    """The level's minimiser, near the origin of its free coordinates.
+
+    Raises:
+        SolverError: no point passes the optimality conditions.
+    """
+    origin = np.zeros(problem.C.shape[1])
+    point = minimise_on(problem, origin, WorkingSet.empty(problem))
+    if faults(problem, point).none:
+        return point
+    if guess is not None:
+        found = _try(problem, origin, guess)
+        if found is not None:
+            return found
+    reason = "its point fails the optimality conditions"
+    for start in (_ask, _origin):
+        try:
+            found = _descend(problem, *start(problem, backend))
+        except SolverError as error:
+            reason, found = str(error), None
+        if found is not None:
+            return found
+    raise SolverError(f"no optimal point (QP backend '{backend.name}': {reason}).")
+
+
+def _try(problem: LevelProblem, origin: Array, work: WorkingSet) -> LevelPoint | None:
+    """Trust a guessed set, mending at most a few rows."""
+    for _ in range(GUESS_ROUNDS):
+        point = minimise_on(problem, origin, work)
+        found = faults(problem, point)
+        if found.none:
+            return point
+        carried, violated = work
+        if found.wrong.any():
+            carried = np.where(found.wrong > 0.0, 0, carried)
+        if (found.outside[work.carried != 0] != 0.0).any():
+            return None
+        carried = np.where(found.outside != 0.0, np.sign(found.outside), carried)
+        violated = np.where(found.beyond != 0.0, np.sign(found.beyond), violated)
+        violated = np.where(found.met, 0, violated)
+        work = WorkingSet(carried.astype(np.int8), violated.astype(np.int8))
+    return None
+
+
+def _origin(problem: LevelProblem, _: QpBackend) -> tuple[Array, Sides]:
+    return np.zeros(problem.C.shape[1]), np.zeros(problem.c_lower.size, np.int8)
+
+
+def _ask(problem: LevelProblem, backend: QpBackend) -> tuple[Array, Sides]:
+    """Pose the QP in (z, s), rows scaled to unit norm and the cost to unit size.
+
+    Raises:
+        SolverError: the backend found no solution.
+    """
+    r, b = problem.C.shape[1], problem.i_lower.size
+    size = 1.0 / problem.scale
+    E, e = problem.E * size, problem.e * size
+    P = np.zeros((r + b, r + b))
+    P[:r, :r] = E.T @ E + 1e-10 * np.eye(r)
+    P[r:, r:] = np.eye(b)
+    q = np.concatenate([-(E.T @ e), np.zeros(b)])
+    G = np.vstack(
+        [
+            np.hstack([problem.I * size, np.eye(b)]),
+            np.hstack([problem.C, np.zeros((problem.C.shape[0], b))]),
+        ]
+    )
+    lower = np.concatenate([problem.i_lower * size, problem.c_lower])
+    upper = np.concatenate([problem.i_upper * size, problem.c_upper])
+    x, duals = backend.solve(P, q, G, lower, upper)
+    return _feasible(problem, x[:r]), _held(problem, duals[b:])
+
+
+def _feasible(problem: LevelProblem, z: Array) -> Array:
+    """The point, drawn towards the feasible origin as far as carried rows demand."""
+    step = _reach(problem, np.zeros_like(z), z, np.zeros(problem.c_lower.size, np.int8))
+    return z * min(1.0, step[0])
+
+
+def _held(problem: LevelProblem, duals: Array) -> Sides:
+    """Independent rows that the backend says push, the strongest first."""
+    held = np.zeros(duals.size, np.int8)
+    floor = PUSHING * max(1e-9, float(np.abs(duals).max(initial=0.0)))
+    bound = np.where(duals > 0.0, problem.c_upper, problem.c_lower)
+    duals = np.where(np.isfinite(bound), duals, 0.0)
+    basis = np.zeros((problem.C.shape[1], 0))
+    for row in np.argsort(-np.abs(duals)):
+        if abs(duals[row]) <= floor:
+            break
+        rest = problem.C[row] - basis @ (basis.T @ problem.C[row])
+        length = float(np.linalg.norm(rest))
+        if length > INDEPENDENT:
+            basis = np.column_stack([basis, rest / length])
+            held[row] = 1 if duals[row] > 0 else -1
+    return held
+
+
+def _descend(problem: LevelProblem, z: Array, held: Sides) -> LevelPoint | None:
+    """Primal active-set steps until the optimality conditions hold."""
+    rounds = 30 + 5 * (held.size + problem.i_lower.size)
+    for round_ in range(rounds):
+        violated = _violated(problem, z)
+        point = minimise_on(problem, z, WorkingSet(held, violated))
+        found = faults(problem, point)
+        if found.none:
+            return point
+        step, row, side = _reach(problem, z, point.z, held)
+        turn = _turn(problem, z, point.z, violated)
+        moved = min(1.0, step, turn)
+        z = z + moved * (point.z - z)
+        if moved < 1.0 and step <= turn:
+            held = held.copy()
+            held[row] = side
+        elif moved == 1.0 and found.wrong.any():
+            first = round_ > rounds // 2  # Bland's rule once the usual one cycles
+            wrong = found.wrong > 0.0 if first else found.wrong
+            held = held.copy()
+            held[int(np.argmax(wrong))] = 0
+    return None
+
+
+def _violated(problem: LevelProblem, z: Array) -> Sides:
+    """Which of the level's rows are beyond a bound at z."""
+    value = problem.I @ z
+    norm = np.linalg.norm(problem.I, axis=1)
+    gap = STEP * (norm + np.abs(value))
+    above, below = value > problem.i_upper + gap, value < problem.i_lower - gap
+    sides: Sides = above.astype(np.int8) - below.astype(np.int8)
+    return sides
+
+
+def _reach(
+    problem: LevelProblem, z: Array, target: Array, held: Sides
+) -> tuple[float, int, int]:
+    """How far towards `target` the carried rows let go; the blocking row and side."""
+    value, slope = problem.C @ z, problem.C @ (target - z)
+    rising = (slope > STEP) & (held == 0)
+    falling = (slope < -STEP) & (held == 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        up = np.where(rising, (problem.c_upper - value) / slope, np.inf)
+        down = np.where(falling, (problem.c_lower - value) / slope, np.inf)
+    ratio = np.maximum(np.minimum(up, down), 0.0)
+    if not ratio.size or not np.isfinite(ratio.min()):
+        return np.inf, -1, 0
+    row = int(np.argmin(ratio))
+    return float(ratio[row]), row, 1 if rising[row] else -1
+
+
+def _turn(problem: LevelProblem, z: Array, target: Array, violated: Sides) -> float:
+    """How far towards `target` until a row of the level changes its status."""
+    value, slope = problem.I @ z, problem.I @ (target - z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        to_upper = (problem.i_upper - value) / slope
+        to_lower = (problem.i_lower - value) / slope
+    moving = np.abs(slope) > STEP * (1.0 + np.abs(value))
+    leaves = np.where(violated > 0, to_upper, to_lower)
+    enters = np.where(slope > 0, to_upper, to_lower)
+    ratio = np.where(violated != 0, leaves, enters)
+    heading = np.where(violated != 0, slope * violated < 0, True)
+    ratio = ratio[moving & heading & np.isfinite(ratio) & (ratio > 0.0)]
+    return float(ratio.min(initial=np.inf)) * (1.0 + 1e-9)

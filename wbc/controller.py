@@ -1,0 +1,152 @@
+"""The controller: robot, hierarchy and resolver, called once a tick."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from wbc.arrays import Array, positive
+from wbc.errors import InputError, ModelError, SolverError
+from wbc.hierarchy import Hierarchy, Level
+from wbc.hqp import HierarchicalQP
+from wbc.resolver import Resolver, Status
+from wbc.robot import Robot
+from wbc.solution import Solution
+from wbc.stack import Stack
+from wbc.state import State
+from wbc.task import Task
+
+__all__ = ["Controller", "resolve"]
+
+FALLBACK_DAMPING = 10.0
+"""Rate [1/s] at which the fallback damps joint velocities."""
+
+
+@final
+class Controller:
+    """Maps measured (q, v) to joint torques; never sends what is not finite.
+
+    When a measurement is not finite, or the resolver fails, it holds the robot by
+    gravity compensation and damping within the torque limits, says so in
+    `Solution.status` and counts it in `failures`.
+
+    Args:
+        robot: the robot.
+        hierarchy: tasks in order of importance; a level or a single task will do.
+        resolver: how priorities become torques; strict hierarchical QP by default.
+        dt: control period [s].
+
+    Raises:
+        UnknownName, InputError: a task does not fit the robot.
+
+    Attributes:
+        failures: ticks that fell back so far.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        hierarchy: Hierarchy | Level | Task,
+        resolver: Resolver | None = None,
+        dt: float = 1e-3,
+    ) -> None:
+        if not isinstance(robot, Robot):
+            raise InputError(f"expected a Robot, got {robot!r}.")
+        self.robot = robot
+        self.hierarchy = Hierarchy.of(hierarchy)
+        self.resolver = HierarchicalQP() if resolver is None else resolver
+        self.dt = positive(dt, "dt")
+        self.failures = 0
+        self._stack = Stack(robot, self.hierarchy)
+        self._solver = self.resolver.start(self._stack)
+        self._state = State(robot, self.dt)
+        self._gravity = robot.state(robot.q_home).gravity()
+        self._damping = np.diag(robot.state(robot.q_home).M) * FALLBACK_DAMPING
+        self._no_wrench: dict[str, Array] = {}
+
+    def __call__(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        t: float = 0.0,
+        wrenches: Mapping[str, ArrayLike] | None = None,
+    ) -> Solution:
+        """Torques for positions q (n,), velocities v (n,) at time t [s].
+
+        Args:
+            q: measured positions [rad or m].
+            v: measured velocities [rad/s or m/s].
+            t: time [s] that moving targets refer to.
+            wrenches: sensor name -> (6,) robot on environment, world axes [N, Nm].
+
+        Raises:
+            InputError: q or v has the wrong shape, which is no sensor fault.
+        """
+        q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
+        n = self.robot.nv
+        if q.shape != (n,) or v.shape != (n,):
+            raise InputError(f"q and v have shapes {q.shape}, {v.shape}; need ({n},).")
+        measured = self._no_wrench
+        if wrenches:
+            measured = {k: np.array(w, dtype=np.float64) for k, w in wrenches.items()}
+        if not self._finite(q, v, t, measured):
+            return self._hold(
+                q, v, Status.SENSOR_INVALID, "a measurement is not finite"
+            )
+        return self._tick(q, v, float(t), measured)
+
+    def _tick(
+        self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
+    ) -> Solution:
+        stack = self._stack
+        self._state.refresh(q, v, t, wrenches)
+        try:
+            stack.update(self._state)
+            answer = self._solver.solve()
+        except (SolverError, ModelError, np.linalg.LinAlgError) as error:
+            return self._hold(q, v, Status.SOLVER_FAILED, str(error))
+        torque = stack.torque(answer.vdot)
+        if not np.isfinite(torque).all():
+            return self._hold(q, v, Status.SOLVER_FAILED, "a torque is not finite")
+        return Solution(stack, torque, answer, answer.status)
+
+    @staticmethod
+    def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
+        if not (np.isfinite(q.sum() + v.sum()) and np.isfinite(t)):
+            return False
+        return all(np.isfinite(w).all() for w in wrenches.values())
+
+    def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
+        """Gravity compensation and damping; unknown joints count as at rest."""
+        self.failures += 1
+        if np.isfinite(q).all():
+            self._gravity = self.robot.state(q).gravity()
+        braking = self._damping * np.where(np.isfinite(v), v, 0.0)
+        limit = self.robot.tau_max
+        torque = np.clip(self._gravity - braking, -limit, limit)
+        return Solution(self._stack, torque, None, status, message)
+
+    def __repr__(self) -> str:
+        return (
+            f"Controller({self.robot.name}, {self.hierarchy!r}, {self.resolver.name})"
+        )
+
+
+def resolve(
+    state: State,
+    hierarchy: Hierarchy | Level | Task,
+    resolver: Resolver | None = None,
+) -> Solution:
+    """Resolve one state once, without a controller: for study and for tests.
+
+    Raises:
+        UnknownName, InputError: a task does not fit the robot.
+        SolverError: the resolver found no solution.
+    """
+    stack = Stack(state.robot, Hierarchy.of(hierarchy))
+    stack.update(state)
+    answer = (resolver or HierarchicalQP()).start(stack).solve()
+    return Solution(stack, stack.torque(answer.vdot), answer, answer.status)

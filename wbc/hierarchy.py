@@ -1,0 +1,120 @@
+"""Ordered levels of weighted tasks, and the operators that write them down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import final
+
+from wbc.arrays import positive
+from wbc.errors import InputError
+from wbc.task import Task
+
+__all__ = ["Hierarchy", "Level"]
+
+
+@final
+class Level:
+    """Tasks that share one priority, each with a weight; immutable.
+
+    Attributes:
+        terms: (task, weight) pairs; a weight multiplies its task's residual, so the
+            level minimises the sum of (weight * residual)^2.
+    """
+
+    __slots__ = ("terms",)
+
+    def __init__(self, terms: tuple[tuple[Task, float], ...]) -> None:
+        if not terms:
+            raise InputError("a level needs at least one task.")
+        self.terms = terms
+
+    @classmethod
+    def of(cls, item: Task | Level) -> Level:
+        """A level as it is, or a single task as a level.
+
+        Raises:
+            InputError: neither a task nor a level.
+        """
+        if isinstance(item, Level):
+            return item
+        if isinstance(item, Task):
+            return cls(((item, 1.0),))
+        if isinstance(item, Hierarchy):
+            raise InputError(
+                "'+' joins tasks of one level; it cannot join a hierarchy. "
+                "'a + b >> c' reads (a + b) >> c."
+            )
+        raise InputError(f"expected a task, got {item!r}.")
+
+    def __add__(self, other: Task | Level) -> Level:
+        return Level(self.terms + Level.of(other).terms)
+
+    def __rmul__(self, weight: float) -> Level:
+        factor = positive(weight, "a task's weight")
+        return Level(tuple((task, factor * w) for task, w in self.terms))
+
+    def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
+        return Hierarchy.of(self) >> other
+
+    @property
+    def name(self) -> str:
+        """Names of the tasks, joined by '+'."""
+        return " + ".join(task.name for task, _ in self.terms)
+
+    def __repr__(self) -> str:
+        return " + ".join(
+            repr(task) if weight == 1.0 else f"{weight:g} * {task!r}"
+            for task, weight in self.terms
+        )
+
+
+@final
+class Hierarchy:
+    """Levels from the most to the least important; immutable, cheap to rebuild.
+
+    Args:
+        levels: each a task, or a level of several.
+
+    Raises:
+        InputError: no level, something that is no task, or one task named twice.
+    """
+
+    __slots__ = ("levels",)
+
+    def __init__(self, *levels: Task | Level) -> None:
+        if not levels:
+            raise InputError("an empty hierarchy has nothing to control: add a task.")
+        self.levels = tuple(Level.of(level) for level in levels)
+        seen: dict[str, Task] = {}
+        for task in self.tasks():
+            if task.name in seen:
+                twice = "stands twice" if seen[task.name] is task else "has a namesake"
+                raise InputError(
+                    f"task '{task.name}' {twice} in the hierarchy: give each task "
+                    "once, under a name of its own (name=...)."
+                )
+            seen[task.name] = task
+
+    @classmethod
+    def of(cls, item: Task | Level | Hierarchy) -> Hierarchy:
+        """A hierarchy as it is, or one of a single level."""
+        return item if isinstance(item, Hierarchy) else cls(item)
+
+    def tasks(self) -> Iterator[Task]:
+        """All tasks, from the top."""
+        return (task for level in self.levels for task, _ in level.terms)
+
+    def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
+        return Hierarchy(*self.levels, *Hierarchy.of(other).levels)
+
+    def __add__(self, other: object) -> Level:
+        raise InputError(
+            "'+' joins tasks of one level; it cannot join a hierarchy. Write the sum "
+            "inside its level: limits >> (a + b) >> c."
+        )
+
+    def __len__(self) -> int:
+        return len(self.levels)
+
+    def __repr__(self) -> str:
+        return " >> ".join(f"({level!r})" for level in self.levels)

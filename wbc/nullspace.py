@@ -1,0 +1,213 @@
+"""Prioritised control by null-space projection: WBCF, TSID and the UF family.
+
+In coordinates y where the law's metric is the identity (y = L^T vdot with M = L L^T
+for the operational-space laws, y = vdot for TSID) the dynamically consistent
+projection is an orthogonal one. With Z an orthonormal basis of what higher levels
+leave free, P4 eqs. (4)-(8), as corrected, become for each level
+
+    y <- y + Z (J Z)^+ (b - J y),      Z <- Z null(J Z),
+
+with b the wanted acceleration less the drift. Gravity and Coriolis torques are added
+once, outside the levels, so that an unassigned null space is compensated too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal, TypeAlias, final, get_args
+
+import numpy as np
+
+from wbc.arrays import Array, IntArray, positive
+from wbc.errors import SolverError, UnknownName
+from wbc.linalg import RANK_TOLERANCE, Factor, factorise
+from wbc.resolver import Answer, Resolver, Solver, Status
+from wbc.stack import Stack
+
+__all__ = ["Damping", "NullSpace"]
+
+LawName: TypeAlias = Literal["wbcf", "tsid", "uf"]
+
+FEASIBILITY = 1e-9
+"""A bound counts as violated beyond this, relative to its row's norm and size."""
+MULTIPLIER = 1e-9
+"""A multiplier below this, relative to the forces at play, has no sign."""
+
+
+@final
+class Damping:
+    """Damped inverse near singularities, for the force only (facts: sound).
+
+    A direction of relative singular value s < threshold is inverted with
+    lambda^2 = (1 - (s / threshold)^2) factor^2.
+
+    Args:
+        threshold: relative to the norm of the unprojected task.
+        factor: largest damping, on the same scale.
+    """
+
+    def __init__(self, threshold: float = 0.1, factor: float = 0.05) -> None:
+        self.threshold = positive(threshold, "threshold")
+        self.factor = positive(factor, "factor")
+
+    def solve(self, factor: Factor, b: Array, scale: float) -> Array:
+        """Damped least-squares solution of the factorised system, (n,)."""
+        s = factor.sigma / scale
+        square = np.maximum(1.0 - (s / self.threshold) ** 2, 0.0) * self.factor**2
+        gain = s / (s * s + square) / scale
+        return factor.V1 @ (gain * (factor.U.T @ b))
+
+
+@final
+class NullSpace(Resolver):
+    """Strict priorities by projection, inequalities by saturation.
+
+    A violated bound becomes an equality row on top of its own level and is released
+    when its multiplier changes sign (saturation in the null space).
+
+    Args:
+        law: "wbcf" (Sentis and Khatib; sound, optimal), "tsid" (Del Prete; least
+            joint acceleration in the free space), or "uf" (Peters; each task solved
+            alone, then projected: sound, not optimal).
+        damping: None for the exact truncated inverse.
+
+    Raises:
+        UnknownName: no such law.
+    """
+
+    def __init__(self, law: LawName = "wbcf", damping: Damping | None = None) -> None:
+        if law not in get_args(LawName):
+            raise UnknownName("projection law", law, get_args(LawName))
+        self.law, self.damping = law, damping
+        self.name = "nullspace" if law == "wbcf" else f"nullspace:{law}"
+
+    def start(self, stack: Stack) -> Solver:
+        """A solver with an active set of its own."""
+        return _Projection(self, stack)
+
+
+class _Projection(Solver):
+    """Saturation in the null space around the equality recursion."""
+
+    def __init__(self, resolver: NullSpace, stack: Stack) -> None:
+        self._damping, self._stack = resolver.damping, stack
+        self._kinetic = resolver.law != "tsid"
+        self._alone = resolver.law == "uf"
+        self._active: dict[int, int] = {}
+        m = stack.lower.size
+        self._level = np.zeros(m, dtype=int)
+        for k, where in enumerate(stack.levels):
+            self._level[where] = k
+
+    def solve(self) -> Answer:
+        """Resolve by projection, adding and releasing saturated bounds."""
+        stack = self._stack
+        A = stack.Ay if self._kinetic else stack.A
+        self._free = stack.lower != stack.upper
+        for row in [r for r in self._active if not self._free[r]]:
+            del self._active[row]
+        released: set[int] = set()
+        status = Status.INCOMPLETE
+        for _ in range(4 * A.shape[1] + 8):
+            y, ranks = self._project(A)
+            if self._add_worst(A, y):
+                continue
+            if not self._release_one(A, y, released):
+                status = Status.SOLVED
+                break
+        if not np.isfinite(y).all():
+            raise SolverError("the projection gave a result that is not finite.")
+        vdot = stack.L_inv.T @ y if self._kinetic else y
+        return Answer(vdot, ranks, status)
+
+    def _blocks(self) -> Iterator[tuple[int, IntArray, Array]]:
+        """(level, row indices, targets): saturated rows first, then equalities."""
+        stack = self._stack
+        for k, where in enumerate(stack.levels):
+            held = [r for r in self._active if self._level[r] == k]
+            if held:
+                sides = [self._active[r] for r in held]
+                bounds = [
+                    stack.upper[r] if side > 0 else stack.lower[r]
+                    for r, side in zip(held, sides, strict=True)
+                ]
+                yield k, np.array(held), np.array(bounds)
+            rows = where.start + np.flatnonzero(~self._free[where])
+            if rows.size:
+                yield k, rows, stack.lower[rows]
+
+    def _project(self, A: Array) -> tuple[Array, tuple[int, ...]]:
+        n = A.shape[1]
+        y, Z = np.zeros(n), np.eye(n)
+        ranks = [0] * len(self._stack.levels)
+        for level, rows, b in self._blocks():
+            J = A[rows]
+            scale = float(np.linalg.norm(J)) or 1.0
+            factor = factorise(J @ Z, scale, RANK_TOLERANCE)
+            if self._alone:
+                alone = factorise(J, scale, RANK_TOLERANCE)
+                y = y + Z @ (Z.T @ self._invert(alone, b, scale))
+            else:
+                y = y + Z @ self._invert(factor, b - J @ y, scale)
+            Z = Z @ factor.V2
+            ranks[level] += factor.rank
+        return y, tuple(ranks)
+
+    def _invert(self, factor: Factor, b: Array, scale: float) -> Array:
+        if self._damping is None:
+            return factor.solve(b)
+        return self._damping.solve(factor, b, scale)
+
+    def _add_worst(self, A: Array, y: Array) -> bool:
+        """Saturate the row that is violated most, relative to its norm."""
+        stack = self._stack
+        value = A @ y
+        above, below = value - stack.upper, stack.lower - value
+        excess = np.where(self._free, np.maximum(above, below), -np.inf)
+        excess[list(self._active)] = -np.inf
+        norm = np.linalg.norm(A, axis=1)
+        slack = FEASIBILITY * (norm + np.abs(value))
+        relative = np.where(excess > slack, excess / np.maximum(norm, 1e-300), 0.0)
+        worst = int(np.argmax(relative))
+        if relative[worst] <= 0.0:
+            return False
+        self._active[worst] = 1 if above[worst] > below[worst] else -1
+        return True
+
+    def _release_one(self, A: Array, y: Array, released: set[int]) -> bool:
+        """Let go of a saturated row that the tasks below would leave by themselves.
+
+        The sign of the first level that pulls at a row decides (lexicographic).
+        """
+        if not self._active:
+            return False
+        above: list[Array] = []
+        held: list[int] = []
+        undecided = set(self._active) - released
+        blocks = [(A[rows], rows, b) for _, rows, b in self._blocks()]
+        n = y.size
+        for J, rows, b in [*blocks, (np.eye(n), np.zeros(0, int), np.zeros(n))]:
+            pull = J.T @ (b - J @ y)
+            row = self._wrong_sign(above, held, pull, undecided)
+            if row is not None:
+                del self._active[row]
+                released.add(row)
+                return True
+            above.append(J)
+            held.extend(int(r) for r in rows)
+        return False
+
+    def _wrong_sign(
+        self, above: list[Array], held: list[int], pull: Array, undecided: set[int]
+    ) -> int | None:
+        if not above or not undecided:
+            return None
+        G = np.vstack(above)
+        multipliers = np.linalg.lstsq(G.T, pull, rcond=RANK_TOLERANCE)[0]
+        scale = MULTIPLIER * (1.0 + float(np.abs(multipliers).max(initial=0.0)))
+        for row, multiplier in zip(held, multipliers, strict=True):
+            if row in undecided and abs(multiplier) > scale:
+                if multiplier * self._active[row] < 0:
+                    return row
+                undecided.discard(row)
+        return None

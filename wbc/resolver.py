@@ -1,0 +1,65 @@
+"""What a resolver is: from the rows of a stack to joint accelerations."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import Enum
+
+from wbc.arrays import Array
+from wbc.stack import Stack
+
+__all__ = ["Answer", "Resolver", "Solver", "Status"]
+
+
+class Status(Enum):
+    """How a tick ended; every value carries what it means.
+
+    A lost direction or a limit that cannot be met is no failure: it shows as the
+    rank and the residual of its level.
+    """
+
+    SOLVED = "all levels resolved"
+    INCOMPLETE = "the limits kept changing sides; the last point was taken"
+    SENSOR_INVALID = "a measurement was not finite: held by gravity and damping"
+    SOLVER_FAILED = "the resolver failed: held by gravity and damping"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answer:
+    """What a resolver found.
+
+    Attributes:
+        vdot: (n,) joint accelerations.
+        ranks: for each level, how many independent directions it could use.
+        status: SOLVED or INCOMPLETE.
+        slacks: (m,) weighted slack of every row when its own level was solved, or
+            None where the resolver does not tell.
+    """
+
+    vdot: Array
+    ranks: tuple[int, ...]
+    status: Status
+    slacks: Array | None = None
+
+
+class Solver(ABC):
+    """A resolver at work on one stack; may keep a warm start between ticks."""
+
+    @abstractmethod
+    def solve(self) -> Answer:
+        """Resolve the stack's present rows.
+
+        Raises:
+            SolverError: no solution was found.
+        """
+
+
+class Resolver(ABC):
+    """A strategy: how strict priorities become joint accelerations."""
+
+    name: str
+
+    @abstractmethod
+    def start(self, stack: Stack) -> Solver:
+        """A solver for this stack, with memory of its own."""

@@ -1,0 +1,151 @@
+"""What a tick decided, and the proof that it was right."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from wbc.arrays import Array
+from wbc.certificate import Certificate, certify, slack_of
+from wbc.errors import StaleError, UnknownName
+from wbc.resolver import Answer, Status
+from wbc.stack import Stack, Term
+
+__all__ = ["Solution", "TaskReport"]
+
+AT_BOUND = 1e-7
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class TaskReport:
+    """How one task fared in a tick.
+
+    Attributes:
+        name: of the task.
+        level: from 1 at the top.
+        unit: of its error.
+        error: (m,) in that unit, NaN for inequality tasks.
+        residual: (m,) what of the wanted acceleration (or torque) was not delivered,
+            in the task's own, unweighted rows.
+        active: names of its rows that sit at a bound or beyond it.
+    """
+
+    name: str
+    level: int
+    unit: str
+    error: Array
+    residual: Array
+    active: tuple[str, ...]
+
+
+@final
+class Solution:
+    """Torques of one tick, and everything that can be asked about them.
+
+    Reports and the certificate read the rows of the tick, which the controller
+    rewrites at the next one: ask before that.
+
+    Attributes:
+        torque: (n,) joint torques [Nm or N], always finite.
+        acceleration: (n,) joint accelerations that they cause in the model, NaN
+            after a fallback.
+        status: how the tick ended.
+        ranks: for each level, the independent directions that it could use; fewer
+            than in the tick before means that the robot lost a direction.
+        message: what went wrong, empty if nothing did.
+    """
+
+    __slots__ = (
+        "_slacks", "_stack", "_tick", "acceleration", "message", "ranks", "status",
+        "torque",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        stack: Stack,
+        torque: Array,
+        answer: Answer | None,
+        status: Status,
+        message: str = "",
+    ) -> None:
+        self._stack, self._tick = stack, stack.tick
+        self.torque, self.status, self.message = torque, status, message
+        self.acceleration = np.full(torque.size, np.nan)
+        self.ranks: tuple[int, ...] = ()
+        self._slacks: Array | None = None
+        if answer is not None:
+            self.acceleration, self.ranks = answer.vdot, answer.ranks
+            self._slacks = answer.slacks
+
+    @property
+    def ok(self) -> bool:
+        """Whether the resolver answered."""
+        return self.status in (Status.SOLVED, Status.INCOMPLETE)
+
+    def certificate(self) -> Certificate:
+        """Proof of lexicographic optimality; `.worst` is 0 for a perfect one.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        stack = self._fresh()
+        where = stack.levels
+        levels = [(stack.Ay[k], stack.lower[k], stack.upper[k]) for k in where]
+        then = None if self._slacks is None else [self._slacks[k] for k in where]
+        y = np.linalg.solve(stack.L_inv.T, self.acceleration)
+        return certify(levels, y, then)
+
+    def report(self, task: str) -> TaskReport:
+        """How a task fared.
+
+        Raises:
+            UnknownName: no task of that name is in the hierarchy.
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        stack = self._fresh()
+        for term in stack.terms:
+            if term.task.name == task:
+                return self._report(stack, term)
+        raise UnknownName("task", task, [t.task.name for t in stack.terms])
+
+    def reports(self) -> tuple[TaskReport, ...]:
+        """How all tasks fared, from the top level down."""
+        stack = self._fresh()
+        return tuple(self._report(stack, term) for term in stack.terms)
+
+    def _report(self, stack: Stack, term: Term) -> TaskReport:
+        where = term.where
+        A, lower, upper = stack.A[where], stack.lower[where], stack.upper[where]
+        slack = slack_of(A, self.acceleration, lower, upper)
+        value = A @ self.acceleration
+        near = AT_BOUND * (1.0 + np.abs(value))
+        inequality = lower < upper
+        at = inequality & ((value > upper - near) | (value < lower + near))
+        return TaskReport(
+            name=term.task.name,
+            level=term.level + 1,
+            unit=term.task.unit,
+            error=np.where(inequality, np.nan, term.rows.error),
+            residual=slack / term.weight,
+            active=tuple(n for n, a in zip(term.names, at, strict=True) if a),
+        )
+
+    def _fresh(self) -> Stack:
+        if self._stack.tick != self._tick:
+            raise StaleError(
+                "a later tick has rewritten the rows of this solution: ask for its "
+                "certificate and reports before calling the controller again."
+            )
+        if not self.ok:
+            raise StaleError(
+                f"this tick fell back ({self.status.value}): nothing was resolved, so "
+                "there is nothing to report or to prove."
+            )
+        return self._stack
+
+    def __repr__(self) -> str:
+        torque = np.array2string(self.torque, precision=3, suppress_small=True)
+        return f"Solution({self.status.name}, torque={torque}, ranks={self.ranks})"

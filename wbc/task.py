@@ -1,0 +1,131 @@
+"""Tasks: named quantities of a robot, and what should become of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING
+
+from wbc.errors import InputError
+from wbc.law import Law
+from wbc.rows import Rows, Space
+
+if TYPE_CHECKING:
+    from wbc.hierarchy import Hierarchy, Level
+    from wbc.robot import Robot
+    from wbc.state import State
+
+__all__ = ["MotionTask", "Task"]
+
+
+class Task(ABC):
+    """A named quantity: says what, never how important.
+
+    Tasks combine: `a + b` share a level, `a >> b` ranks a strictly above b, and
+    `0.1 * a` scales a's residual within its level.
+
+    Args:
+        name: how reports call it.
+        unit: of each row's error, such as "m".
+        frames: names of the robot's frames that it reads.
+    """
+
+    space: Space = "acceleration"
+
+    def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
+        self.name, self.unit, self.frames = name, unit, frames
+
+    @abstractmethod
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """One name a row; their number is the task's size m."""
+
+    @abstractmethod
+    def update(self, state: State, rows: Rows) -> None:
+        """Write A, lower and upper at this state, in place."""
+
+    def check(self, robot: Robot) -> None:
+        """See that the task fits the robot; called once, by whoever binds them.
+
+        Raises:
+            UnknownName: a frame or joint that the robot does not have.
+            InputError: a target or gain of the wrong size.
+        """
+        for frame in self.frames:
+            robot.frame_id(frame)
+
+    def __add__(self, other: Task | Level) -> Level:
+        from wbc.hierarchy import Level
+
+        return Level.of(self) + other
+
+    def __rmul__(self, weight: float) -> Level:
+        from wbc.hierarchy import Level
+
+        return weight * Level.of(self)
+
+    def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
+        from wbc.hierarchy import Hierarchy
+
+        return Hierarchy.of(self) >> other
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}('{self.name}')"
+
+
+class MotionTask(Task):
+    """An equality task: drives an error e(q, t) to zero by a law.
+
+    A subclass writes `error`, `J` and `drift` of its rows so that
+
+        de/dt = J v + partial,        d2e/dt2 = J vdot + drift,
+
+    where `partial` is what changes by time alone (`rate` on entry to `evaluate` is
+    zero; write the partial there), and `drift` holds all that is not J vdot. The
+    base class asks for J vdot = law(e, de/dt) - drift. For orientations de/dt is the
+    angular velocity of the error, not the derivative of its coordinates.
+
+    Args:
+        name: how reports call it.
+        unit: of each row's error.
+        rows: one name a row.
+        law: from error and rate to acceleration.
+        frames: names of the robot's frames that it reads.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        unit: str,
+        rows: tuple[str, ...],
+        law: Law,
+        frames: tuple[str, ...] = (),
+    ) -> None:
+        super().__init__(name, unit, frames)
+        self.rows, self.law = rows, law
+
+    @abstractmethod
+    def evaluate(self, state: State, out: Rows) -> None:
+        """Write out.error (m,), out.J (m, n), out.drift (m,), and add to out.rate."""
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """The names given at construction."""
+        return self.rows
+
+    def check(self, robot: Robot) -> None:
+        """Frames exist and the law has as many gains as there are rows."""
+        super().check(robot)
+        m = len(self.row_names(robot))
+        for gain in ("stiffness", "damping"):
+            size = getattr(getattr(self.law, gain, None), "size", 1)
+            if size not in (1, m):
+                raise InputError(
+                    f"task '{self.name}' has {m} rows and {size} values of {gain}: "
+                    "give one number, or one a row."
+                )
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Ask for the acceleration that the law wants."""
+        rows.rate[:] = 0.0
+        self.evaluate(state, rows)
+        rows.rate += rows.A @ state.v
+        rows.upper[:] = self.law.acceleration(rows.error, rows.rate) - rows.drift
+        rows.lower[:] = rows.upper
