@@ -50,7 +50,7 @@ class PointOnCurve(MotionTask):
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
         F = state.frame(self.frames[0])
-        along = self.curve.follow(F)
+        along = self.curve.follow(state, self.frames[0])
         c = along.point.c
         offset = F.p - c[0]
         slip = F.V[:3] - c[1] * along.rate
@@ -113,7 +113,7 @@ class TravelSpeed(MotionTask):
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the row; its error is the speed error."""
-        along = self.path.follow(state.frame(self.frames[0]))
+        along = self.path.follow(state, self.frames[0])
         rise, rise_rate = smooth_rise((state.t - self.start) / self.ramp)
         fall, fall_slope = self._fall(self.end - along.s)
         reference = self.speed * rise * fall

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tasks.geometry import perpendicular
-from tasks.path import Path, PathState
+from tasks.path import Path, PathPoint
 from wbc import PD, FrameState, MotionTask, Rows, State
 from wbc.arrays import Array, frozen, unit
+from wbc.linalg import cross
 from wbc.errors import InputError
 
 __all__ = ["AxisAlignment", "AxisAlongPath"]
@@ -77,7 +78,7 @@ class AxisAlignment(MotionTask):
         out.error[:] = -B @ rotation_between(F.R @ self._triad[0], self._n, B[0])
         out.J[:] = B @ F.J[3:]
         out.rate[:] = -B @ self._omega
-        swept = np.cross(F.V[3:], self._omega)
+        swept = cross(F.V[3:], self._omega)
         out.drift[:] = B @ (F.drift[3:] - self._alpha + swept)
 
 
@@ -124,24 +125,23 @@ class AxisAlongPath(MotionTask):
             raise InputError(f"angles of '{self.name}' must be finite.")
         self.work, self.travel = float(work), float(travel)
 
-    def direction(self, along: PathState) -> Array:
-        """D and its derivatives by s, (3, 3), one a row."""
-        point = along.point
+    def direction_at(self, point: PathPoint) -> Array:
+        """The direction and two derivatives by s at a point of the path, (3, 3)."""
         m = np.cos(self.work) * point.n1[:3] + np.sin(self.work) * point.n2[:3]
         return -np.cos(self.travel) * m + np.sin(self.travel) * point.c[1:]  # type: ignore[no-any-return]
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
         F: FrameState = state.frame(self.frames[0])
-        along = self.path.follow(F)
-        d, slope, bend = self.direction(along)
+        along = self.path.follow(state, self.frames[0])
+        d, slope, bend = self.direction_at(along.point)
         B = (F.R @ self._triad[1:].T).T
-        turn = np.cross(d, slope)
+        turn = cross(d, slope)
         omega = turn * along.rate
         out.error[:] = -B @ rotation_between(F.R @ self._triad[0], d, B[0])
         out.J[:] = B @ (F.J[3:] - np.outer(turn, along.J))
-        alpha = np.cross(d, bend) * along.rate**2 + turn * along.drift
-        out.drift[:] = B @ (F.drift[3:] - alpha + np.cross(F.V[3:], omega))
+        alpha = cross(d, bend) * along.rate**2 + turn * along.drift
+        out.drift[:] = B @ (F.drift[3:] - alpha + cross(F.V[3:], omega))
 
 
 def triad(axis: ArrayLike, task: str) -> Array:
@@ -158,7 +158,7 @@ def rotation_between(a: Array, n: Array, spare: Array) -> Array:
         n: (3,) to.
         spare: (3,) unit vector across a, the axis where n = -a.
     """
-    axis = np.cross(a, n)
+    axis = cross(a, n)
     sine, cosine = float(np.linalg.norm(axis)), float(a @ n)
     angle = np.arctan2(sine, cosine)
     if sine > 1e-12:

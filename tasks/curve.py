@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly, make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from tasks.path import Path, PathPoint
 from wbc.arrays import Array, frozen
@@ -19,7 +20,8 @@ DENSE = 4000
 """Samples at which arc length is measured."""
 KNOTS = 240
 """Samples that the curve is finally interpolated through."""
-NEWTON_STEPS = 4
+NEWTON_STEPS = 6
+CONVERGED = 1e-13
 
 
 @final
@@ -56,10 +58,9 @@ class Curve(Path):
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
         n1 = _normals(c, tangent, _along(normals, u, u_of_s, len(through)))
         rows = np.hstack([c, n1, np.cross(tangent, n1)])
-        poly = PPoly.from_spline(make_interp_spline(self._knots, rows, k=DEGREE))
-        real = np.flatnonzero(np.diff(poly.x) > 0)
-        self._breaks = poly.x[real]
-        self._coefficients = np.ascontiguousarray(np.moveaxis(poly.c[:, real], 0, 1))
+        self._breaks, self._coefficients = _pieces(
+            make_interp_spline(self._knots, rows, k=DEGREE)
+        )
         self._samples = c
 
     def locate(self, p: Array) -> float:
@@ -69,7 +70,10 @@ class Curve(Path):
         for _ in range(NEWTON_STEPS):
             c, tangent, bend = self.at(s).c[:3]
             slope = tangent @ tangent - (p - c) @ bend
-            s += float(tangent @ (p - c)) / max(float(slope), 0.1)
+            step = float(tangent @ (p - c)) / max(float(slope), 0.1)
+            s += step
+            if abs(step) < CONVERGED:
+                break
         return s
 
     def at(self, s: float) -> PathPoint:
@@ -94,6 +98,14 @@ def _points(points: ArrayLike) -> Array:
     return frozen(array, array.shape, "the curve's points")
 
 
+def _pieces(spline: BSpline) -> tuple[Array, Array]:
+    """Start (k,) and Taylor coefficients (k, 6, 9) of every polynomial piece."""
+    breaks = np.unique(spline.t)[:-1]
+    orders = range(DEGREE, -1, -1)
+    taylor = [spline(breaks, order) / factorial(order) for order in orders]
+    return breaks, np.stack(taylor, axis=1)
+
+
 def _powers(x: float) -> Array:
     """(4, 6): a quintic's value and three derivatives, highest power first."""
     x2, x3, x4 = x * x, x * x * x, x * x * x * x
@@ -107,11 +119,11 @@ def _powers(x: float) -> Array:
     )
 
 
-def _speed(spline: object, u: Array) -> Array:
-    return np.linalg.norm(spline(u, 1), axis=-1)  # type: ignore[operator, no-any-return]
+def _speed(spline: BSpline, u: Array) -> Array:
+    return np.linalg.norm(spline(u, 1), axis=-1)  # type: ignore[no-any-return]
 
 
-def _arc_length(spline: object, end: float) -> tuple[Array, Array]:
+def _arc_length(spline: BSpline, end: float) -> tuple[Array, Array]:
     """Arc length s at dense parameters u, by Simpson's rule on every interval."""
     u = np.linspace(0.0, end, DENSE)
     middle = 0.5 * (u[1:] + u[:-1])
@@ -120,7 +132,7 @@ def _arc_length(spline: object, end: float) -> tuple[Array, Array]:
     return np.concatenate([[0.0], np.cumsum(pieces)]), u
 
 
-def _refine(spline: object, s: Array, u: Array, wanted: Array, guess: Array) -> Array:
+def _refine(spline: BSpline, s: Array, u: Array, wanted: Array, guess: Array) -> Array:
     """Newton on s(u) = wanted, with Simpson's rule from the dense sample below."""
     for _ in range(3):
         below = np.clip(np.searchsorted(u, guess, side="right") - 1, 0, u.size - 2)

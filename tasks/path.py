@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import final
 
-from wbc import FrameState
+from wbc import FrameState, State
 from wbc.arrays import Array
 
 __all__ = ["Path", "PathPoint", "PathState"]
@@ -45,8 +45,14 @@ class Path(ABC):
     def at(self, s: float) -> PathPoint:
         """Point and frame at s; beyond the ends the path goes on straight."""
 
-    def follow(self, F: FrameState) -> PathState:
-        """Where a frame's origin is along the path, and how that changes."""
+    def follow(self, state: State, frame: str) -> PathState:
+        """Where a frame's origin is along the path, and how that changes.
+
+        Several tasks on one path share the answer within a tick.
+        """
+        return state.remember((self, frame), lambda: self._follow(state.frame(frame)))
+
+    def _follow(self, F: FrameState) -> PathState:
         s = self.locate(F.p)
         point = self.at(s)
         c, tangent, bend, twist = point.c

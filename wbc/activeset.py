@@ -140,14 +140,15 @@ def _descend(problem: LevelProblem, z: Array, held: Sides) -> LevelPoint | None:
         found = faults(problem, point)
         if found.none:
             return point
+        least = not (found.beyond.any() or found.met.any())
+        turn = 1.0 if least else _line_search(problem, z, point.z)
         step, row, side = _reach(problem, z, point.z, held)
-        turn = _turn(problem, z, point.z, violated)
-        moved = min(1.0, step, turn)
+        moved = min(step, turn)
         z = z + moved * (point.z - z)
-        if moved < 1.0 and step <= turn:
+        if step < turn:
             held = held.copy()
             held[row] = side
-        elif moved == 1.0 and found.wrong.any():
+        elif least and found.wrong.any():
             first = round_ > rounds // 2  # Bland's rule once the usual one cycles
             wrong = found.wrong > 0.0 if first else found.wrong
             held = held.copy()
@@ -182,16 +183,28 @@ def _reach(
     return float(ratio[row]), row, 1 if rising[row] else -1
 
 
-def _turn(problem: LevelProblem, z: Array, target: Array, violated: Sides) -> float:
-    """How far towards `target` until a row of the level changes its status."""
-    value, slope = problem.I @ z, problem.I @ (target - z)
+def _line_search(problem: LevelProblem, z: Array, target: Array) -> float:
+    """The step in (0, 1] towards `target` at which the level's cost is least.
+
+    The cost is convex and piecewise quadratic, so its slope is continuous and grows:
+    it is followed from one change of a row's status to the next. A row that is at its
+    bound and about to leave it counts from the start, or steps could cycle.
+    """
+    ahead = target - z
+    fixed = problem.E @ ahead
+    at_start, curvature = float(fixed @ (problem.E @ z - problem.e)), fixed @ fixed
+    value, slope = problem.I @ z, problem.I @ ahead
     with np.errstate(divide="ignore", invalid="ignore"):
-        to_upper = (problem.i_upper - value) / slope
-        to_lower = (problem.i_lower - value) / slope
-    moving = np.abs(slope) > STEP * (1.0 + np.abs(value))
-    leaves = np.where(violated > 0, to_upper, to_lower)
-    enters = np.where(slope > 0, to_upper, to_lower)
-    ratio = np.where(violated != 0, leaves, enters)
-    heading = np.where(violated != 0, slope * violated < 0, True)
-    ratio = ratio[moving & heading & np.isfinite(ratio) & (ratio > 0.0)]
-    return float(ratio.min(initial=np.inf)) * (1.0 + 1e-9)
+        crossing = np.concatenate(
+            [(problem.i_upper - value) / slope, (problem.i_lower - value) / slope]
+        )
+    inside = np.isfinite(crossing) & (crossing > 0.0) & (crossing < 1.0)
+    steps = np.concatenate([[0.0], np.sort(crossing[inside]), [1.0]])
+    rows = value + steps[:, None] * slope
+    beyond = rows - np.clip(rows, problem.i_lower, problem.i_upper)
+    climb = at_start + steps * curvature + beyond @ slope
+    k = int(np.argmax(climb > 0.0))
+    if climb[k] <= 0.0 or k == 0:
+        return 1.0
+    share = climb[k - 1] / (climb[k - 1] - climb[k])
+    return float(steps[k - 1] + share * (steps[k] - steps[k - 1]))

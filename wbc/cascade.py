@@ -20,7 +20,7 @@ from wbc.activeset import solve_level
 from wbc.arrays import Array, BoolArray, IntArray
 from wbc.errors import SolverError
 from wbc.levelqp import FEASIBILITY, LevelPoint, LevelProblem, WorkingSet
-from wbc.linalg import RANK_TOLERANCE, factorise
+from wbc.linalg import RANK_TOLERANCE, factorise, norm, recursion
 from wbc.qp import QpBackend
 
 __all__ = ["Cascade", "CascadeResult", "LevelRows"]
@@ -80,6 +80,9 @@ class Cascade:
         Raises:
             SolverError: a level has no point that passes its optimality conditions.
         """
+        quick = self._unbounded(levels, n)
+        if quick is not None:
+            return quick
         left = _Left(
             np.zeros(n), np.eye(n), np.zeros((0, n)), np.zeros(0), np.zeros(0),
             np.zeros(0, dtype=int),
@@ -93,6 +96,27 @@ class Cascade:
         zero = np.zeros(n)
         self._level(len(levels), left, np.eye(n), zero, zero, first)
         return CascadeResult(left.x, tuple(slacks), tuple(ranks))
+
+    def _unbounded(self, levels: Sequence[LevelRows], n: int) -> CascadeResult | None:
+        """The optimum where no bound matters, which is nearly every tick of a robot.
+
+        What is lexicographically optimal without the inequalities, and happens to
+        meet them all, is optimal with them.
+        """
+        equal = [lower == upper for _, lower, upper in levels]
+        x, ranks = recursion(
+            ((A[e], lower[e]) for (A, lower, _), e in zip(levels, equal, strict=True)),
+            n,
+            self._tolerance,
+        )
+        slacks = []
+        for (A, lower, upper), e in zip(levels, equal, strict=True):
+            value = A @ x
+            slack = np.where(e, lower - value, 0.0)
+            if not e.all() and ((value > upper) | (value < lower))[~e].any():
+                return None
+            slacks.append(slack)
+        return CascadeResult(x, tuple(slacks), tuple(ranks))
 
     def _level(
         self, k: int, left: _Left, A: Array, lower: Array, upper: Array, first: int
@@ -125,7 +149,7 @@ class Cascade:
             C=left.C @ left.Z,
             c_lower=left.lower - carried,
             c_upper=left.upper - carried,
-            scale=float(np.linalg.norm(A)) or 1.0,
+            scale=norm(A),
             tolerance=self._tolerance,
         )
 
@@ -137,12 +161,12 @@ class Cascade:
         equal = lower == upper
         fixed = equal | (slack != 0.0)
         pushing = np.abs(point.multipliers) > point.pull
-        scale = float(np.linalg.norm(A)) or 1.0
+        scale = norm(A)
         rows = np.vstack([A[fixed] / scale, left.C[pushing]]) @ left.Z
         left.Z = left.Z @ factorise(rows, 1.0, self._tolerance).V2
-        norm = np.linalg.norm(A, axis=1)
-        met = ~fixed & (norm > 0.0) & (np.isfinite(lower) | np.isfinite(upper))
-        unit, size, keep = A[met] / norm[met, None], 1.0 / norm[met], ~pushing
+        length = np.linalg.norm(A, axis=1)
+        met = ~fixed & (length > 0.0) & (np.isfinite(lower) | np.isfinite(upper))
+        unit, size, keep = A[met] / length[met, None], 1.0 / length[met], ~pushing
         value = unit @ left.x
         left.C = np.vstack([left.C[keep], unit])
         left.lower = np.append(left.lower[keep], np.minimum(lower[met] * size, value))

@@ -139,7 +139,7 @@ def minimise_on(problem: LevelProblem, start: Array, work: WorkingSet) -> LevelP
     slack = t - T @ z
     forces = float(np.linalg.norm(T)) if T.size else 0.0
     round_off = NOISE * (1.0 + float(np.linalg.norm(t)))
-    pull = forces * (SIGN * float(np.linalg.norm(slack)) + round_off)
+    pull = forces * SIGN * float(np.linalg.norm(slack)) + problem.scale * round_off
     rank = free.rank
     if held is not None:
         multipliers[on] = _transpose_solve(held, T.T @ slack)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from wbc.arrays import Array
 
-__all__ = ["RANK_TOLERANCE", "Factor", "factorise"]
+__all__ = ["RANK_TOLERANCE", "Factor", "cross", "factorise", "norm", "recursion"]
 
 RANK_TOLERANCE = 1e-9
 """A singular value below this times the norm of the task's own matrix, *before*
@@ -58,3 +59,41 @@ def factorise(A: Array, scale: float, tolerance: float = RANK_TOLERANCE) -> Fact
     rank = int(np.count_nonzero(sigma > tolerance * scale))
     lost = float(sigma[rank]) if rank < sigma.size else 0.0
     return Factor(U[:, :rank], sigma[:rank], Vt[:rank].T, Vt[rank:].T, lost)
+
+
+def recursion(
+    levels: Iterable[tuple[Array, Array]], n: int, tolerance: float = RANK_TOLERANCE
+) -> tuple[Array, list[int]]:
+    """Lexicographic least squares of equalities, of least norm where free.
+
+    For each level x <- x + Z (J Z)^+ (b - J x), then Z <- Z null(J Z).
+
+    Args:
+        levels: (J (m, n), b (m,)) from the top.
+        n: number of unknowns.
+        tolerance: relative rank tolerance.
+
+    Returns:
+        x (n,) and the rank of every level.
+    """
+    x, Z = np.zeros(n), np.eye(n)
+    ranks = []
+    for J, b in levels:
+        factor = factorise(J @ Z, norm(J), tolerance)
+        x = x + Z @ factor.solve(b - J @ x)
+        Z = Z @ factor.V2
+        ranks.append(factor.rank)
+    return x, ranks
+
+
+def norm(A: Array) -> float:
+    """Frobenius norm; 1 for a matrix of zeros, so that it can divide."""
+    flat = A.ravel()
+    return float(np.sqrt(flat @ flat)) or 1.0
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a x b for two (3,) vectors, without the generality that np.cross pays for."""
+    a0, a1, a2 = a
+    b0, b1, b2 = b
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])

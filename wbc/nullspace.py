@@ -19,8 +19,10 @@ from typing import Literal, TypeAlias, final, get_args
 import numpy as np
 
 from wbc.arrays import Array, IntArray, positive
+from wbc.cascade import Cascade
 from wbc.errors import SolverError, UnknownName
-from wbc.linalg import RANK_TOLERANCE, Factor, factorise
+from wbc.linalg import RANK_TOLERANCE, Factor, factorise, norm
+from wbc.qp import QpBackend
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
 
@@ -30,8 +32,12 @@ LawName: TypeAlias = Literal["wbcf", "tsid", "uf"]
 
 FEASIBILITY = 1e-9
 """A bound counts as violated beyond this, relative to its row's norm and size."""
+AT_BOUND = 1e-8
+"""A row of the strict optimum this close to a bound, relative likewise, is held."""
 MULTIPLIER = 1e-9
 """A multiplier below this, relative to the forces at play, has no sign."""
+
+_Found: TypeAlias = tuple[Array, tuple[int, ...], Status]
 
 
 @final
@@ -94,6 +100,7 @@ class _Projection(Solver):
         self._kinetic = resolver.law != "tsid"
         self._alone = resolver.law == "uf"
         self._active: dict[int, int] = {}
+        self._cascade = Cascade(QpBackend())
         m = stack.lower.size
         self._level = np.zeros(m, dtype=int)
         for k, where in enumerate(stack.levels):
@@ -106,19 +113,41 @@ class _Projection(Solver):
         self._free = stack.lower != stack.upper
         for row in [r for r in self._active if not self._free[r]]:
             del self._active[row]
-        released: set[int] = set()
-        status = Status.INCOMPLETE
-        for _ in range(4 * A.shape[1] + 8):
-            y, ranks = self._project(A)
-            if self._add_worst(A, y):
-                continue
-            if not self._release_one(A, y, released):
-                status = Status.SOLVED
-                break
+        y, ranks, status = self._saturate(A) or self._strict(A)
         if not np.isfinite(y).all():
             raise SolverError("the projection gave a result that is not finite.")
         vdot = stack.L_inv.T @ y if self._kinetic else y
         return Answer(vdot, ranks, status)
+
+    def _saturate(self, A: Array) -> _Found | None:
+        """Hold the worst violated row, let go of one that pulls, until neither is."""
+        for _ in range(2 * A.shape[1] + 4):
+            y, ranks = self._project(A)
+            if not self._add_worst(A, y) and not self._release_one(A, y):
+                return y, ranks, Status.SOLVED
+        return None
+
+    def _strict(self, A: Array) -> _Found:
+        """Where saturation goes round in circles: the set that the strict QP holds.
+
+        Laws that are not optimal may want more rows held; then none is released.
+
+        Raises:
+            SolverError: there is no such set.
+        """
+        stack, status = self._stack, Status.SOLVED
+        levels = [(A[k], stack.lower[k], stack.upper[k]) for k in stack.levels]
+        value = A @ self._cascade.solve(levels, A.shape[1]).x
+        near = AT_BOUND * (np.linalg.norm(A, axis=1) + np.abs(value))
+        side = 1 * (value >= stack.upper - near) - 1 * (value <= stack.lower + near)
+        self._active = {
+            int(row): int(side[row]) for row in np.flatnonzero(side * self._free)
+        }
+        y, ranks = self._project(A)
+        while self._add_worst(A, y):
+            y, ranks = self._project(A)
+            status = Status.INCOMPLETE
+        return y, ranks, status
 
     def _blocks(self) -> Iterator[tuple[int, IntArray, Array]]:
         """(level, row indices, targets): saturated rows first, then equalities."""
@@ -142,9 +171,11 @@ class _Projection(Solver):
         ranks = [0] * len(self._stack.levels)
         for level, rows, b in self._blocks():
             J = A[rows]
-            scale = float(np.linalg.norm(J)) or 1.0
+            scale = norm(J)
             factor = factorise(J @ Z, scale, RANK_TOLERANCE)
-            if self._alone:
+            if self._free[rows[0]]:  # a bound is met exactly, whatever the law
+                y = y + Z @ factor.solve(b - J @ y)
+            elif self._alone:
                 alone = factorise(J, scale, RANK_TOLERANCE)
                 y = y + Z @ (Z.T @ self._invert(alone, b, scale))
             else:
@@ -165,16 +196,18 @@ class _Projection(Solver):
         above, below = value - stack.upper, stack.lower - value
         excess = np.where(self._free, np.maximum(above, below), -np.inf)
         excess[list(self._active)] = -np.inf
-        norm = np.linalg.norm(A, axis=1)
-        slack = FEASIBILITY * (norm + np.abs(value))
-        relative = np.where(excess > slack, excess / np.maximum(norm, 1e-300), 0.0)
+        if not (excess > 0.0).any():
+            return False
+        size = np.linalg.norm(A, axis=1)
+        slack = FEASIBILITY * (size + np.abs(value))
+        relative = np.where(excess > slack, excess / np.maximum(size, 1e-300), 0.0)
         worst = int(np.argmax(relative))
         if relative[worst] <= 0.0:
             return False
         self._active[worst] = 1 if above[worst] > below[worst] else -1
         return True
 
-    def _release_one(self, A: Array, y: Array, released: set[int]) -> bool:
+    def _release_one(self, A: Array, y: Array) -> bool:
         """Let go of a saturated row that the tasks below would leave by themselves.
 
         The sign of the first level that pulls at a row decides (lexicographic).
@@ -183,7 +216,7 @@ class _Projection(Solver):
             return False
         above: list[Array] = []
         held: list[int] = []
-        undecided = set(self._active) - released
+        undecided = set(self._active)
         blocks = [(A[rows], rows, b) for _, rows, b in self._blocks()]
         n = y.size
         for J, rows, b in [*blocks, (np.eye(n), np.zeros(0, int), np.zeros(n))]:
@@ -191,7 +224,6 @@ class _Projection(Solver):
             row = self._wrong_sign(above, held, pull, undecided)
             if row is not None:
                 del self._active[row]
-                released.add(row)
                 return True
             above.append(J)
             held.extend(int(r) for r in rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
 
@@ -12,6 +13,7 @@ from wbc.certificate import Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
 from wbc.resolver import Answer, Status
 from wbc.stack import Stack, Term
+from wbc.task import MotionTask
 
 __all__ = ["Solution", "TaskReport"]
 
@@ -115,6 +117,28 @@ class Solution:
         """How all tasks fared, from the top level down."""
         stack = self._fresh()
         return tuple(self._report(stack, term) for term in stack.terms)
+
+    def error_norms(self) -> Iterator[tuple[str, float]]:
+        """Name and norm of the error of every equality task, cheap enough for a log."""
+        for term in self._fresh().terms:
+            if isinstance(term.task, MotionTask):
+                yield term.task.name, float(np.linalg.norm(term.rows.error))
+
+    def active_rows(self) -> list[str]:
+        """Inequality rows at a bound or beyond it, as "level k: task: row"."""
+        stack = self._fresh()
+        value = stack.A @ self.acceleration
+        near = AT_BOUND * (1.0 + np.abs(value))
+        at = (value > stack.upper - near) | (value < stack.lower + near)
+        at &= stack.lower < stack.upper
+        if not at.any():
+            return []
+        return [
+            f"level {term.level + 1}: {term.task.name}: {name}"
+            for term in stack.terms
+            for name, active in zip(term.names, at[term.where], strict=True)
+            if active
+        ]
 
     def _report(self, stack: Stack, term: Term) -> TaskReport:
         where = term.where

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, final
+from collections.abc import Callable, Hashable, Mapping
+from typing import TYPE_CHECKING, Any, TypeVar, final
 
 import numpy as np
 import pinocchio as pin
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from wbc.robot import Robot
 
 __all__ = ["FrameState", "State"]
+
+Found = TypeVar("Found")
 
 WORLD_ALIGNED = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 NO_WRENCHES: Mapping[str, Array] = {}
@@ -55,7 +57,7 @@ class State:
     """
 
     __slots__ = (
-        "M", "_data", "_frames", "_zero", "dt", "h", "q", "robot", "t", "v", "wrenches",
+        "M", "_data", "_frames", "_memory", "_zero", "dt", "h", "q", "robot", "t", "v", "wrenches",
     )  # fmt: skip
 
     def __init__(self, robot: Robot, dt: float) -> None:
@@ -63,6 +65,7 @@ class State:
         self._data = robot.model.createData()
         self._zero = np.zeros(robot.nv)
         self._frames: dict[str, FrameState] = {}
+        self._memory: dict[Hashable, Any] = {}
 
     def refresh(
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array] = NO_WRENCHES
@@ -78,6 +81,7 @@ class State:
         pin.forwardKinematics(model, data, q, v, self._zero)
         pin.computeJointJacobians(model, data, q)
         self._frames.clear()
+        self._memory.clear()
 
     def frame(self, name: str) -> FrameState:
         """Pose, Jacobian, twist and drift of a frame.
@@ -89,6 +93,13 @@ class State:
         if known is None:
             known = self._frames[name] = self._compute(self.robot.frame_id(name))
         return known
+
+    def remember(self, key: Hashable, make: Callable[[], Found]) -> Found:
+        """What `make` gives, computed once at this instant for all who ask by `key`."""
+        if key not in self._memory:
+            self._memory[key] = make()
+        found: Found = self._memory[key]
+        return found
 
     def wrench(self, sensor: str) -> Array:
         """Measured wrench (6,) of the robot on the environment, world axes.

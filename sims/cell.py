@@ -1,0 +1,145 @@
+"""A cell: robots, their surroundings and sensors, behind four verbs."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import final
+
+import mujoco
+import numpy as np
+
+from sims.mismatch import Mismatch
+from sims.sensors import Encoders
+from wbc import InputError, Robot
+from wbc.arrays import Array
+
+__all__ = ["ArmCell", "Cell", "Observation"]
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class Observation:
+    """What the controller gets to see.
+
+    Attributes:
+        t: time [s].
+        q: (n,) measured positions [rad].
+        v: (n,) measured velocities [rad/s].
+        wrenches: sensor name -> (6,) robot on environment, world axes [N, Nm].
+    """
+
+    t: float
+    q: Array
+    v: Array
+    wrenches: dict[str, Array] = field(default_factory=dict)
+
+
+class Cell(ABC):
+    """A simulated work-cell; the loop is observe, apply, step.
+
+    Attributes:
+        name: what reports call it.
+        robot: the controller's model of the robot.
+        model: the simulated world, which may differ from it.
+        data: its state.
+    """
+
+    name: str
+    robot: Robot
+    model: mujoco.MjModel
+    data: mujoco.MjData
+
+    @abstractmethod
+    def reset(self, q: Array) -> None:
+        """Put the robot at rest at q (n,), time 0."""
+
+    @abstractmethod
+    def observe(self) -> Observation:
+        """Sensor readings of this instant."""
+
+    @abstractmethod
+    def apply(self, torque: Array) -> None:
+        """Set the motors' torques (n,) [Nm]."""
+
+    @abstractmethod
+    def step(self) -> None:
+        """Move on by one time step."""
+
+
+@final
+class ArmCell(Cell):
+    """One arm in a scene that it was compiled into.
+
+    Args:
+        name: what reports call it.
+        robot: the controller's model.
+        spec: the scene with the arm in it, joints named as in the robot.
+        mismatch: how the simulated arm differs from the model; None for not at all.
+        encoders: what the joint sensors add; perfect ones by default.
+
+    Raises:
+        InputError: a joint of the robot is missing in the scene, or has no motor.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        robot: Robot,
+        spec: mujoco.MjSpec,
+        *,
+        mismatch: Mismatch | None = None,
+        encoders: Encoders | None = None,
+    ) -> None:
+        self.name, self.robot = name, robot
+        self.model = spec.compile()
+        self._joints = [self._joint(joint) for joint in robot.joint_names]
+        self._motors = np.array([self._motor(j) for j in self._joints])
+        self._qpos = self.model.jnt_qposadr[self._joints]
+        self._dofs = self.model.jnt_dofadr[self._joints]
+        if mismatch is not None:
+            mismatch.apply(self.model, self._dofs, robot.tau_max)
+        self.data = mujoco.MjData(self.model)
+        self._encoders = encoders or Encoders()
+        self.reset(robot.q_home)
+
+    def _joint(self, name: str) -> int:
+        joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
+        if joint < 0:
+            raise InputError(f"joint '{name}' of the robot is not in the scene.")
+        return int(joint)
+
+    def _motor(self, joint: int) -> int:
+        driven = self.model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
+        motors = np.flatnonzero(driven & (self.model.actuator_trnid[:, 0] == joint))
+        if motors.size != 1:
+            name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_JOINT, joint)
+            raise InputError(f"joint '{name}' must have one motor, has {motors.size}.")
+        return int(motors[0])
+
+    def reset(self, q: Array) -> None:
+        """Put the arm at rest at q (n,), time 0."""
+        mujoco.mj_resetData(self.model, self.data)
+        self.data.qpos[self._qpos] = q
+        self._encoders.reset()
+        mujoco.mj_step1(self.model, self.data)
+
+    def observe(self) -> Observation:
+        """Joint readings of this instant."""
+        d = self.data
+        q, v = self._encoders.read(d.qpos[self._qpos], d.qvel[self._dofs])
+        return Observation(d.time, q, v)
+
+    def apply(self, torque: Array) -> None:
+        """Set the motors' torques (n,) [Nm]."""
+        self.data.ctrl[self._motors] = torque
+
+    def step(self) -> None:
+        """Finish the time step with the applied torques and begin the next one."""
+        mujoco.mj_step2(self.model, self.data)
+        mujoco.mj_step1(self.model, self.data)
+
+    @property
+    def truth(self) -> tuple[Array, Array]:
+        """Real positions and velocities (n,) of the arm."""
+        return self.data.qpos[self._qpos].copy(), self.data.qvel[self._dofs].copy()

@@ -1,0 +1,127 @@
+"""The command line: `wbc list`, `run`, `compare`, `bench` and `audit`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from sims.commands import audit_model, bench, compare, list_cells, run_cell
+from sims.demo import Options
+from wbc import WbcError
+
+__all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Returns:
+        0 if everything held, 1 if a bound did not, 2 on bad usage.
+    """
+    parser = _parser()
+    asked = parser.parse_args(arguments)
+    try:
+        code: int = asked.action(asked)
+    except WbcError as error:
+        sys.stderr.write(f"wbc: {error}\n")
+        return 2
+    except KeyboardInterrupt:
+        sys.stderr.write("\nwbc: interrupted\n")
+        return 130
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="wbc", description="Whole-body control in simulated cells."
+    )
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    _add(commands, "list", "names the cells", lambda _: list_cells())
+    run = _add(
+        commands, "run", "runs a cell", lambda a: run_cell(a.cell, _options(a), a.out)
+    )
+    run.add_argument("cell", metavar="CELL", help="see 'wbc list'")
+    run.add_argument("--resolver", default="hqp", help=RESOLVERS)
+    run.add_argument("--view", action="store_true", help="open a window")
+    _common(run)
+    against = _add(
+        commands,
+        "compare",
+        "runs a cell under several resolvers",
+        lambda a: compare(a.cell, a.resolvers.split(","), _options(a), a.out),
+    )
+    against.add_argument("cell", metavar="CELL", help="see 'wbc list'")
+    against.add_argument(
+        "--resolvers",
+        default="hqp,nullspace,weighted",
+        help="names with commas between",
+    )
+    _common(against)
+    speed = _add(
+        commands, "bench", "times the tick of every resolver", lambda a: bench(a.ticks)
+    )
+    speed.add_argument("--ticks", type=_count, default=2000, help="ticks of each")
+    audit = _add(
+        commands,
+        "audit",
+        "compares what Pinocchio and MuJoCo make of a model",
+        lambda a: audit_model(a.model),
+    )
+    audit.add_argument("model", metavar="MODEL", help="an MJCF or URDF file")
+    return parser
+
+
+RESOLVERS = "hqp, hqp:BACKEND, nullspace, nullspace:tsid, nullspace:uf or weighted"
+
+
+def _add(commands, name, about, action):  # type: ignore[no-untyped-def] # private class
+    command = commands.add_parser(name, help=about, description=about)
+    command.set_defaults(action=action)
+    return command
+
+
+def _common(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--duration",
+        type=_seconds,
+        metavar="S",
+        help="longest simulated time of each job of the cell [s]",
+    )
+    command.add_argument("--seed", type=int, default=0, help="of everything random")
+    command.add_argument(
+        "--mismatch",
+        action="store_true",
+        help="simulate a robot that differs from the controller's model",
+    )
+    command.add_argument("--out", metavar="DIR", help="write metrics, log and report")
+    command.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def _options(asked: argparse.Namespace) -> Options:
+    return Options(
+        resolver=getattr(asked, "resolver", "hqp"),
+        duration=asked.duration,
+        seed=asked.seed,
+        mismatch=asked.mismatch,
+        view=getattr(asked, "view", False),
+        quiet=asked.quiet,
+    )
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a positive number, got {text}")
+    return value
+
+
+def _count(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"must be at least 1, got {text}")
+    return value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""What an application hands to the command line: options in, an outcome out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, final
+
+from sims.metrics import Metric
+from wbc.arrays import Array
+
+__all__ = ["Demo", "Options", "Outcome"]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the user asked for.
+
+    Attributes:
+        resolver: name of a resolver (`sims.resolvers`).
+        duration: longest simulated time of each job [s]; None for as long as it takes.
+        seed: of everything random.
+        mismatch: simulate a robot that differs from the controller's model.
+        view: open a window while it runs.
+        quiet: no progress bar.
+    """
+
+    resolver: str = "hqp"
+    duration: float | None = None
+    seed: int = 0
+    mismatch: bool = False
+    view: bool = False
+    quiet: bool = False
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What a run of a cell gave.
+
+    Attributes:
+        metrics: the numbers that it is judged by.
+        series: named time series, for the log file.
+        figures: makes the (caption, svg) pairs of the report.
+        replay: makes the 3-D replay, one HTML document.
+        picture: makes a picture (height, width, 3) of the end of the run.
+        facts: what it was made with.
+    """
+
+    metrics: list[Metric]
+    series: dict[str, Array]
+    figures: Callable[[], list[tuple[str, str]]]
+    replay: Callable[[], str]
+    picture: Callable[[], Any]
+    facts: dict[str, str] = field(default_factory=dict)
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Demo:
+    """An application that the command line can run.
+
+    Attributes:
+        name: what it is called there.
+        about: one line about it.
+        run: options -> outcome.
+    """
+
+    name: str
+    about: str
+    run: Callable[[Options], Outcome]

@@ -1,0 +1,172 @@
+"""Figures of a report, as SVG text: many samples in, few bytes out, always the same.
+
+Units are part of the labels that callers pass, such as "lateral error [mm]".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from sims.axes import (
+    PALETTE,
+    Bounds,
+    Span,
+    draw_bounds,
+    legend,
+    new_figure,
+    shade,
+    styles,
+    vector,
+)
+from sims.svg import styled, to_svg
+from sims.thinning import columns, thin_curve, thin_series
+from wbc.arrays import Array
+from wbc.errors import InputError
+
+__all__ = ["PALETTE", "Bounds", "Span", "heat_rows", "lines3d", "time_series", "xy"]
+
+_POINTS = 3600  # vertices of one figure; about 24 bytes each
+
+
+@styled
+def time_series(
+    title: str,
+    t: ArrayLike,
+    series: Mapping[str, ArrayLike],
+    ylabel: str,
+    bounds: Bounds | None = None,
+    spans: Sequence[Span] | None = None,
+) -> str:
+    """Curves over time, every peak kept.
+
+    Args:
+        title: what the figure shows.
+        t: times (T,) [s], ascending.
+        series: label -> values (T,); NaN leaves a gap.
+        ylabel: quantity and unit of the values.
+        bounds: limits drawn dashed, with or without labels. One far outside the
+            data is named in the legend instead.
+        spans: intervals (name, begin [s], end [s]) to shade.
+    """
+    times = vector(t, "t")
+    entries = len(series) + len(bounds or ())
+    height = 2.5 + 0.2 * -(-entries // 4)  # [in], four legend entries a line
+    figure, axes = new_figure(title, "time [s]", ylabel, height)
+    budget = _POINTS // max(len(series), 1)
+    looks = styles(len(series))
+    for (label, values), look in zip(series.items(), looks, strict=True):
+        y = vector(values, label, len(times))
+        kept = thin_series(y, budget)
+        axes.plot(times[kept], y[kept], label=label, **look)
+    draw_bounds(axes, bounds, list(series.values()))
+    if len(times):
+        axes.set_xlim(times[0], times[-1] if times[-1] > times[0] else None)
+    shade(axes, spans or ())
+    legend(axes)
+    return to_svg(figure, title)
+
+
+@styled
+def heat_rows(
+    title: str,
+    t: ArrayLike,
+    rows: Mapping[str, ArrayLike],
+    unit: str = "",
+    spans: Sequence[Span] | None = None,
+) -> str:
+    """One coloured strip a row over time, such as which limit is active when.
+
+    Args:
+        title: what the figure shows.
+        t: times (T,) [s], ascending.
+        rows: label -> values (T,); booleans become on and off, numbers a scale of
+            colours. Where several samples share a pixel the largest magnitude shows.
+        unit: quantity and unit of numbers, for the colour bar.
+        spans: intervals (name, begin [s], end [s]) to mark.
+    """
+    times = vector(t, "t")
+    if not rows or len(times) < 2:
+        raise InputError("a heat map needs a row and two samples.")
+    flags = all(np.asarray(values).dtype == bool for values in rows.values())
+    table = np.array([vector(values, k, len(times)) for k, values in rows.items()])
+    figure, axes = new_figure(title, "time [s]", "", height=1.2 + 0.22 * len(rows))
+    image = axes.imshow(
+        columns(times, table, 600),
+        aspect="auto",
+        interpolation="none",
+        extent=(times[0], times[-1], len(rows) - 0.5, -0.5),
+        **_colours(table, flags),
+    )
+    axes.set_yticks(range(len(rows)), list(rows))
+    axes.set_yticks(np.arange(0.5, len(rows) - 1), minor=True)
+    axes.grid(visible=False)
+    axes.grid(visible=True, which="minor", axis="y", color="white", linewidth=2.0)
+    axes.tick_params(which="minor", length=0.0)
+    if not flags:
+        figure.colorbar(image, ax=axes, label=unit)
+    shade(axes, spans or (), filled=False)
+    return to_svg(figure, title)
+
+
+@styled
+def xy(
+    title: str,
+    curves: Mapping[str, tuple[ArrayLike, ArrayLike]],
+    xlabel: str,
+    ylabel: str,
+    equal: bool = True,
+) -> str:
+    """Plane curves {label: (x (N,), y (N,))}; `equal` scales both axes alike."""
+    figure, axes = new_figure(title, xlabel, ylabel, height=3.6)
+    budget = _POINTS // max(len(curves), 1)
+    looks = styles(len(curves))
+    for (label, (x, y)), look in zip(curves.items(), looks, strict=True):
+        abscissa = vector(x, label)
+        points = np.column_stack([abscissa, vector(y, label, len(abscissa))])
+        kept = thin_curve(points, budget)
+        axes.plot(*points[kept].T, label=label, **look)
+    if equal:
+        axes.set_aspect("equal", adjustable="datalim")
+    legend(axes)
+    return to_svg(figure, title)
+
+
+@styled
+def lines3d(
+    title: str, curves: Mapping[str, ArrayLike], labels: Sequence[str] | None = None
+) -> str:
+    """Space curves {label: points (N, 3) [m]}, axes scaled alike."""
+    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    axes: Any = figure.add_subplot(projection="3d")
+    axes.set_title(title)
+    for axis, text in zip("xyz", labels or ("x [m]", "y [m]", "z [m]"), strict=True):
+        getattr(axes, f"set_{axis}label")(text)
+    budget = _POINTS // max(len(curves), 1)
+    looks = styles(len(curves))
+    for (label, values), look in zip(curves.items(), looks, strict=True):
+        points = np.asarray(values, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise InputError(f"'{label}' has shape {points.shape}; it must be (N, 3).")
+        kept = thin_curve(points, budget)
+        axes.plot(*points[kept].T, label=label, **look)
+    axes.set_aspect("equal")
+    legend(axes)
+    return to_svg(figure, title)
+
+
+def _colours(table: Array, flags: bool) -> dict[str, Any]:
+    """Two colours for flags; one scale from zero, or two where signs differ."""
+    if flags:
+        return {"cmap": ListedColormap(["#ECEFF1", PALETTE[1]]), "vmin": 0, "vmax": 1}
+    finite = table[np.isfinite(table)]
+    least, greatest = (finite.min(), finite.max()) if finite.size else (0.0, 1.0)
+    if least < 0.0 < greatest:
+        reach = max(-least, greatest)
+        return {"cmap": "PuOr", "vmin": -reach, "vmax": reach}
+    return {"cmap": "cividis", "vmin": min(least, 0.0), "vmax": max(greatest, 0.0)}

@@ -1,0 +1,45 @@
+"""How a simulated robot differs from the controller's model of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import final
+
+import mujoco
+import numpy as np
+
+from wbc.arrays import Array
+
+__all__ = ["Mismatch"]
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """Seeded errors of masses, centres of mass and joint friction.
+
+    Attributes:
+        mass: largest relative error of a link's mass and inertia.
+        offset: largest shift of a centre of mass along each axis [m].
+        coulomb: dry friction, as a share of each joint's torque limit.
+        viscous: viscous friction [s], as a share of the torque limit per rad/s.
+        seed: of the errors.
+    """
+
+    mass: float = 0.05
+    offset: float = 0.003
+    coulomb: float = 0.005
+    viscous: float = 0.005
+    seed: int = 0
+
+    def apply(self, model: mujoco.MjModel, dofs: Array, tau_max: Array) -> None:
+        """Change the simulated model, in place; the controller's is not touched."""
+        rng = np.random.default_rng(self.seed)
+        factor = 1.0 + rng.uniform(-self.mass, self.mass, model.nbody)
+        model.body_mass *= factor
+        model.body_inertia *= factor[:, None]
+        shift = rng.uniform(-self.offset, self.offset, (model.nbody, 3))
+        model.body_ipos += shift * (model.body_mass > 0.0)[:, None]
+        model.dof_frictionloss[dofs] = self.coulomb * tau_max
+        model.dof_damping[dofs] = self.viscous * tau_max
+        mujoco.mj_setConst(model, mujoco.MjData(model))

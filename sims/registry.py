@@ -1,0 +1,29 @@
+"""The demos that the command line knows, imported when they are asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from sims.demo import Demo
+from wbc import UnknownName
+
+__all__ = ["cell_names", "find_demo"]
+
+MODULES = {"welding": "sims.welding.demo"}
+
+
+def cell_names() -> list[str]:
+    """Names of all cells."""
+    return list(MODULES)
+
+
+def find_demo(name: str) -> Demo:
+    """A demo by name.
+
+    Raises:
+        UnknownName: there is no such cell.
+    """
+    if name not in MODULES:
+        raise UnknownName("cell", name, MODULES)
+    demo: Demo = import_module(MODULES[name]).DEMO
+    return demo

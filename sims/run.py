@@ -1,0 +1,108 @@
+"""The loop that joins a cell and a controller, and what it keeps."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+import numpy as np
+
+from sims.cell import Cell
+from sims.log import Log
+from wbc import Controller, InputError, Solution
+
+__all__ = ["Watcher", "run"]
+
+CERTIFY_EVERY = 50
+"""Ticks between two certificates, which cost more than a tick."""
+
+
+class Watcher(Protocol):
+    """Something that looks at every tick, such as a viewer."""
+
+    def __call__(self, cell: Cell, solution: Solution) -> bool:
+        """See a tick; false ends the run."""
+
+
+def run(
+    cell: Cell,
+    controller: Controller,
+    duration: float,
+    *,
+    script: Callable[[float], None] | None = None,
+    sites: tuple[str, ...] = (),
+    watch: Watcher | None = None,
+    label: str = "",
+    quiet: bool = True,
+) -> Log:
+    """Run a cell under control from its present state.
+
+    Args:
+        cell: the cell.
+        controller: made for the cell's robot.
+        duration: simulated time [s].
+        script: called with the time before every tick; may move targets.
+        sites: names of sites whose true poses are kept.
+        watch: looks at every tick; the run ends when it says so.
+        label: what the progress bar says.
+        quiet: no progress bar; there is none either where output is no terminal.
+
+    Raises:
+        InputError: a duration that is no positive number, or a controller whose
+            period is not the cell's time step.
+    """
+    dt = cell.model.opt.timestep
+    if not (np.isfinite(duration) and duration > 0.0):
+        raise InputError(f"duration must be a positive number of seconds: {duration}.")
+    if abs(dt - controller.dt) > 1e-12:
+        raise InputError(
+            f"the cell steps by {dt} s and the controller by {controller.dt} s: "
+            "make them equal."
+        )
+    ticks = max(1, round(duration / dt))
+    log = Log(cell, controller, ticks, sites)
+    bar = _Bar(label, ticks, quiet)
+    certify = controller.resolver.name.startswith("hqp")
+    for tick in range(ticks):
+        began = time.perf_counter()
+        seen = cell.observe()
+        if script is not None:
+            script(seen.t)
+        before = time.perf_counter()
+        solution = controller(seen.q, seen.v, seen.t, seen.wrenches)
+        after = time.perf_counter()
+        cell.apply(solution.torque)
+        log.record(tick, seen, solution, after - before)
+        cell.step()
+        log.spent += time.perf_counter() - began
+        if certify and tick % CERTIFY_EVERY == 0 and solution.ok:
+            log.worst_certificate = max(
+                log.worst_certificate, solution.certificate().worst
+            )
+        if watch is not None and not watch(cell, solution):
+            break
+        bar.show(tick + 1)
+    bar.close()
+    return log.trimmed()
+
+
+class _Bar:
+    """A progress bar on a terminal; silent anywhere else."""
+
+    def __init__(self, label: str, ticks: int, quiet: bool) -> None:
+        self._label, self._ticks = label, ticks
+        self._on = not quiet and sys.stderr.isatty()
+        self._stride = max(1, ticks // 100)
+
+    def show(self, tick: int) -> None:
+        if self._on and (tick % self._stride == 0 or tick == self._ticks):
+            share = tick / self._ticks
+            filled = "█" * round(30 * share)
+            sys.stderr.write(f"\r{self._label:<24} {filled:<30} {share:4.0%}")
+            sys.stderr.flush()
+
+    def close(self) -> None:
+        if self._on:
+            sys.stderr.write("\n")

@@ -1,0 +1,115 @@
+"""The welding demo: all jobs, judged and drawn."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from robots import racer
+from sims import welding
+from sims.cell import ArmCell
+from sims.demo import Demo, Options, Outcome
+from sims.log import Log, shared_metrics
+from sims.replay import Replay, Trace
+from sims.resolvers import make_resolver
+from sims.run import run
+from sims.snapshot import Image, render
+from sims.viewer import Viewer, open_viewer
+from sims.welding.figures import figures
+from sims.welding.metrics import metrics
+from sims.welding.parts import TIP, Part, parts
+from sims.welding.workpiece import CURVE, SEAM
+from wbc import Controller
+
+__all__ = ["DEMO"]
+
+PAUSE = 0.5
+"""Between two jobs in the replay [s]."""
+
+
+def _run(options: Options) -> Outcome:
+    """Weld a spot, a seam with and without jogging, and a saddle."""
+    arm = racer.load()
+    cell = welding.cell(arm, mismatch=options.mismatch, seed=options.seed)
+    window = open_viewer(cell) if options.view else None
+    logs: dict[str, Log] = {}
+    jobs = parts(arm, window.jogger if window else None)
+    for part in jobs:
+        logs[part.name] = _weld(cell, part, options, window)
+    if window:
+        window.close()
+    series = {
+        f"{part}/{name}": values
+        for part, log in logs.items()
+        for name, values in log.arrays().items()
+    }
+    shown = {name: log for name, log in logs.items() if name != "seam_still"}
+    return Outcome(
+        metrics=[
+            *metrics(logs, options.mismatch),
+            *shared_metrics(list(logs.values())),
+        ],
+        series=series,
+        figures=lambda: figures(logs),
+        replay=lambda: _replay(cell.model, shown),
+        picture=lambda: _picture(cell),
+        facts={"robot": repr(arm), "simulated time": _simulated(logs)},
+    )
+
+
+def _weld(cell: ArmCell, part: Part, options: Options, window: Viewer | None) -> Log:
+    cell.reset(part.start)
+    controller = Controller(cell.robot, part.hierarchy, make_resolver(options.resolver))
+    duration = min(part.duration, options.duration or np.inf)
+    return run(
+        cell,
+        controller,
+        duration,
+        script=part.script,
+        sites=(TIP,),
+        watch=window,
+        label=f"welding: {part.name}",
+        quiet=options.quiet,
+    )
+
+
+def _simulated(logs: dict[str, Log]) -> str:
+    return f"{sum(log.t.size for log in logs.values()) * 1e-3:.1f} s"
+
+
+def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
+    """All jobs in a row, with what the tip has welded growing as it goes."""
+    times, qpos, traces, begin = [], [], [], 0.0
+    for name, log in logs.items():
+        t = begin + log.t - log.t[0]
+        times.append(t)
+        qpos.append(log.qpos)
+        bead = log.p[TIP][::20]
+        traces.append(Trace(f"tip: {name}", bead, "#D55E00", 0.006, t[::20]))
+        begin = t[-1] + PAUSE
+    lines = [np.array([SEAM.at(s).c[0] for s in (0.0, SEAM.length)])]
+    lines.append(np.array([CURVE.at(s).c[0] for s in np.linspace(0, CURVE.length, 60)]))
+    for name, line in zip(("seam", "saddle"), lines, strict=True):
+        traces.append(Trace(name, line, "#0072B2", 0.003))
+    stamps, states = np.concatenate(times), np.concatenate(qpos)
+    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+
+
+def _picture(cell: ArmCell) -> Image:
+    """The cell as it stands at the end."""
+    return render(cell.model, cell.data, _camera(), 1280, 800)
+
+
+def _camera() -> mujoco.MjvCamera:
+    """From the operator's side, where seam and saddle can be seen."""
+    camera = mujoco.MjvCamera()
+    camera.azimuth, camera.elevation, camera.distance = 62.0, -22.0, 2.5
+    camera.lookat[:] = [0.55, 0.08, 0.55]
+    return camera
+
+
+DEMO = Demo(
+    "welding",
+    "a 6-axis arm welds a spot, a straight seam and a pipe saddle",
+    _run,
+)

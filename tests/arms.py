@@ -1,0 +1,109 @@
+"""Arms for the tests: seven axes on LWR kinematics, and random ones, as MJCF text."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from robots import racer
+from wbc import Robot
+
+#            alpha, r [m], mass [kg], centre of mass [m], length, radius [m], axis
+LINKS = (
+    (0, 0.3105, 2.35, (0.0, -0.020, -0.090), 0.24, 0.060, 2),
+    (90, 0.00, 2.70, (0.0, 0.110, 0.010), 0.24, 0.060, 1),
+    (-90, 0.40, 2.40, (0.0, 0.020, -0.090), 0.23, 0.060, 2),
+    (-90, 0.00, 2.05, (0.0, -0.100, 0.010), 0.23, 0.060, 1),
+    (90, 0.39, 1.70, (0.0, 0.020, -0.120), 0.20, 0.055, 2),
+    (90, 0.00, 1.60, (0.0, 0.0045, 0.0), 0.12, 0.060, 2),
+    (-90, 0.00, 0.30, (0.0, 0.0, 0.060), 0.04, 0.040, 2),
+)
+RANGE = np.radians([170, 120, 170, 120, 170, 120, 170])
+SPEED = np.radians([110, 110, 128, 128, 204, 184, 184])
+TORQUE = np.array([176.0, 176, 100, 100, 100, 38, 38])
+HOME = np.array([0.0, 0.5, 0.0, -1.2, 0.0, 0.9, 0.0])
+TIP = 0.178
+ARMATURE = 0.01
+
+
+def _numbers(values) -> str:
+    return " ".join(f"{value:.17g}" for value in np.atleast_1d(values))
+
+
+def _cylinder(mass: float, length: float, radius: float, axis: int) -> np.ndarray:
+    inertia = np.full(3, mass * (3.0 * radius**2 + length**2) / 12.0)
+    inertia[axis] = 0.5 * mass * radius**2
+    return inertia
+
+
+def seven_axis_mjcf() -> str:
+    """T(j-1, j) = Rx(alpha) Rz(theta) Tz(r), tip along the last z axis."""
+    opening, closing = "", ""
+    for j, (alpha, r, mass, com, length, radius, axis) in enumerate(LINKS, 1):
+        a = np.radians(alpha)
+        pos = _numbers([0.0, -r * np.sin(a), r * np.cos(a)])
+        quat = _numbers([np.cos(a / 2), np.sin(a / 2), 0.0, 0.0])
+        opening += (
+            f'<body name="link{j}" pos="{pos}" quat="{quat}">'
+            f'<inertial mass="{mass}" pos="{_numbers(com)}" '
+            f'diaginertia="{_numbers(_cylinder(mass, length, radius, axis))}"/>'
+            f'<joint name="a{j}" axis="0 0 1" armature="{ARMATURE}" '
+            f'range="{_numbers([-RANGE[j - 1], RANGE[j - 1]])}"/>'
+        )
+        closing += "</body>"
+    motors = "".join(
+        f'<motor name="m{j}" joint="a{j}" ctrlrange="{-tau} {tau}"/>'
+        for j, tau in enumerate(TORQUE, 1)
+    )
+    return (
+        '<mujoco model="seven"><compiler angle="radian"/><custom>'
+        f'<numeric name="velocity_limit" data="{_numbers(SPEED)}"/></custom>'
+        f'<worldbody><body name="base">{opening}'
+        f'<site name="tip" pos="0 0 {TIP}"/>{closing}</body></worldbody>'
+        f"<actuator>{motors}</actuator>"
+        f'<keyframe><key name="home" qpos="{_numbers(HOME)}"/></keyframe></mujoco>'
+    )
+
+
+def random_mjcf(rng: np.random.Generator, n: int) -> str:
+    """A chain of hinges about random axes, links of random size and weight."""
+    opening, closing, motors = "", "", ""
+    for j in range(1, n + 1):
+        axis = rng.normal(size=3)
+        low, high = -rng.uniform(0.6, 2.8), rng.uniform(0.6, 2.8)
+        inertia = _cylinder(1.0, 0.2, 0.05, int(rng.integers(3)))
+        mass = rng.uniform(0.5, 4.0)
+        offset = _numbers(rng.uniform(-0.25, 0.25, 3)) if j > 1 else "0 0 0.3"
+        opening += (
+            f'<body name="link{j}" pos="{offset}">'
+            f'<inertial mass="{mass}" pos="{_numbers(rng.uniform(-0.1, 0.1, 3))}" '
+            f'diaginertia="{_numbers(mass * inertia)}"/>'
+            f'<joint name="a{j}" axis="{_numbers(axis / np.linalg.norm(axis))}" '
+            f'armature="0.05" range="{_numbers([low, high])}"/>'
+        )
+        closing += "</body>"
+        motors += f'<motor joint="a{j}" ctrlrange="-{200 // j + 60} {200 // j + 60}"/>'
+    return (
+        f'<mujoco model="random{n}"><compiler angle="radian"/><worldbody>'
+        f'<body name="base">{opening}<site name="tip" pos="0.1 0 0.2"/>{closing}'
+        f"</body></worldbody><actuator>{motors}</actuator></mujoco>"
+    )
+
+
+@cache
+def seven_axis() -> Robot:
+    return Robot.from_mjcf(seven_axis_mjcf(), name="seven")
+
+
+@cache
+def six_axis() -> Robot:
+    return racer.load()
+
+
+def random_arm(rng: np.random.Generator, n: int) -> Robot:
+    return Robot.from_mjcf(random_mjcf(rng, n), velocity_limit=rng.uniform(1.0, 4.0, n))
+
+
+ROBOTS = {"racer": six_axis, "seven": seven_axis}
+TIPS = {"racer": "torch_tip", "seven": "tip"}

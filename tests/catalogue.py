@@ -1,0 +1,270 @@
+"""Every task once, and random stacks: what the general properties are proved on.
+
+A new task is subjected to all of them by one line in `CATALOGUE`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+
+import tasks
+from tests.arms import TIPS
+from wbc import Hierarchy, Level, Robot, Rows, State, Task
+
+Kind = Literal["exact", "near zero", "velocity", "bounds"]
+Rng = np.random.Generator
+
+
+def _still(t: float) -> None:
+    """A target that does not move."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A task, and how its target moves: `move(t)` puts it where it is at time t."""
+
+    task: Task
+    move: Callable[[float], None] = _still
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One task of the catalogue.
+
+    kind: "exact" where d(error)/dt is the rate everywhere, "near zero" where only at
+    a small error (errors that are rotations), "velocity" where the error is itself
+    the rate, "bounds" for inequality tasks.
+    make: (state, rng, aligned) -> Subject in generic position, or at zero error.
+    """
+
+    kind: Kind
+    make: Callable[[State, Rng, bool], Subject]
+
+
+def tip(robot: Robot) -> str:
+    return TIPS[robot.name]
+
+
+def random_state(robot: Robot, rng: Rng, t: float = 0.0) -> State:
+    """Inside the position limits (or a turn), at a good part of the speed limits."""
+    low, high = np.maximum(robot.q_min, -3.0), np.minimum(robot.q_max, 3.0)
+    q = rng.uniform(low, high)
+    return robot.state(q, rng.uniform(-0.5, 0.5, robot.nv) * robot.v_max, t)
+
+
+def random_rotation(rng: Rng, size: float = 2.0) -> np.ndarray:
+    w = rng.normal(size=3)
+    return np.array(pin.exp3(size * rng.uniform(0.2, 1.0) * w / np.linalg.norm(w)))
+
+
+def turning(rng: Rng) -> Callable[[float], tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """R(t), omega(t), alpha(0) of a frame that turns about changing axes."""
+    omega, alpha = rng.normal(size=3), rng.normal(size=3)
+
+    def at(t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        late = np.array(pin.exp3(0.5 * t * t * alpha))
+        R = late @ np.array(pin.exp3(t * omega))
+        return R, t * alpha + late @ omega, alpha
+
+    return at
+
+
+# ------------------------------------------------------------------- the factories
+
+
+def _near(state: State, rng: Rng, aligned: bool, size: float = 0.1) -> np.ndarray:
+    p = state.frame(tip(state.robot)).p
+    return p if aligned else p + rng.uniform(-size, size, 3)
+
+
+def _position(state: State, rng: Rng, aligned: bool) -> Subject:
+    p, pd, pdd = _near(state, rng, aligned), rng.normal(size=3), rng.normal(size=3)
+    task = tasks.FramePosition(tip(state.robot), p)
+    return Subject(
+        task,
+        lambda t: task.set_target(p + t * pd + 0.5 * t * t * pdd, pd + t * pdd, pdd),
+    )
+
+
+def _target(state: State, rng: Rng, aligned: bool) -> np.ndarray:
+    R = state.frame(tip(state.robot)).R
+    return R if aligned else random_rotation(rng) @ R
+
+
+def _orientation(state: State, rng: Rng, aligned: bool) -> Subject:
+    R, turn = _target(state, rng, aligned), turning(rng)
+    task = tasks.FrameOrientation(tip(state.robot), R)
+
+    def move(t: float) -> None:
+        turned, omega, alpha = turn(t)
+        task.set_target(turned @ R, omega, alpha)
+
+    return Subject(task, move)
+
+
+def _pose(state: State, rng: Rng, aligned: bool) -> Subject:
+    p, R = _near(state, rng, aligned), _target(state, rng, aligned)
+    pd, pdd, turn = rng.normal(size=3), rng.normal(size=3), turning(rng)
+    task = tasks.FramePose(tip(state.robot), p, R)
+
+    def move(t: float) -> None:
+        turned, omega, alpha = turn(t)
+        task.set_target(
+            p + t * pd + 0.5 * t * t * pdd,
+            turned @ R,
+            np.concatenate([pd + t * pdd, omega]),
+            np.concatenate([pdd, alpha]),
+        )
+
+    return Subject(task, move)
+
+
+def _axis(state: State, rng: Rng, aligned: bool) -> Subject:
+    axis, turn = rng.normal(size=3), turning(rng)
+    n = _target(state, rng, aligned) @ axis
+    task = tasks.AxisAlignment(tip(state.robot), n, axis=axis)
+
+    def move(t: float) -> None:
+        turned, omega, alpha = turn(t)
+        task.set_target(turned @ n, omega, alpha)
+
+    return Subject(task, move)
+
+
+def curve_near(state: State, rng: Rng) -> tasks.Curve:
+    """A bent and twisted curve that passes the tip at a few centimetres."""
+    u = np.linspace(-1.0, 1.0, 21)
+    shape = np.stack([0.3 * u, 0.08 * np.sin(2.0 * u), 0.06 * np.cos(2.5 * u)], axis=1)
+    middle = _near(state, rng, False, 0.02) - [0.0, 0.0, 0.06]
+    return tasks.Curve(shape @ random_rotation(rng).T + middle)
+
+
+def _along(state: State, rng: Rng, aligned: bool) -> Subject:
+    frame, path = tip(state.robot), curve_near(state, rng)
+    work, travel = rng.uniform(-0.5, 0.5, 2)
+    draft = tasks.AxisAlongPath(frame, path, work=work, travel=travel)
+    F = state.frame(frame)
+    axis = rng.normal(size=3)
+    if aligned:
+        axis = F.R.T @ draft.direction_at(path.follow(F).point)[0]
+    return Subject(
+        tasks.AxisAlongPath(frame, path, work=work, travel=travel, axis=axis)
+    )
+
+
+def _line(state: State, rng: Rng, aligned: bool) -> tasks.Line:
+    return tasks.Line(_near(state, rng, aligned), rng.normal(size=3))
+
+
+def _speed(state: State, rng: Rng, aligned: bool) -> Subject:
+    """On the curve, while the speed still rises and already falls."""
+    frame, path = tip(state.robot), curve_near(state, rng)
+    s = path.locate(state.frame(frame).p)
+    return Subject(
+        tasks.TravelSpeed(
+            frame, path, speed=0.1, ramp=0.8, start=state.t - 0.3, end=s + 0.03
+        )
+    )
+
+
+CATALOGUE: dict[type[Task], Entry] = {
+    tasks.FramePosition: Entry("exact", _position),
+    tasks.FrameOrientation: Entry("near zero", _orientation),
+    tasks.FramePose: Entry("near zero", _pose),
+    tasks.PointOnPoint: Entry(
+        "exact", lambda s, g, z: Subject(tasks.PointOnPoint(tip(s.robot), _near(s, g, z)))
+    ),
+    tasks.PointOnLine: Entry(
+        "exact", lambda s, g, z: Subject(tasks.PointOnLine(tip(s.robot), _line(s, g, z)))
+    ),
+    tasks.PointOnPlane: Entry(
+        "exact",
+        lambda s, g, z: Subject(
+            tasks.PointOnPlane(
+                tip(s.robot), tasks.Plane(_near(s, g, z), g.normal(size=3))
+            )
+        ),
+    ),
+    tasks.PointOnCurve: Entry(
+        "exact",
+        lambda s, g, z: Subject(tasks.PointOnCurve(tip(s.robot), curve_near(s, g))),
+    ),
+    tasks.AxisAlignment: Entry("near zero", _axis),
+    tasks.AxisAlongPath: Entry("near zero", _along),
+    tasks.TravelSpeed: Entry("velocity", _speed),
+    tasks.Posture: Entry(
+        "exact", lambda s, g, z: Subject(tasks.Posture(g.uniform(-1, 1, s.robot.nv)))
+    ),
+    tasks.Damping: Entry("velocity", lambda s, g, z: Subject(tasks.Damping())),
+    tasks.JointLimits: Entry("bounds", lambda s, g, z: Subject(tasks.JointLimits())),
+    tasks.TorqueLimits: Entry("bounds", lambda s, g, z: Subject(tasks.TorqueLimits())),
+}
+
+MOTION = {task: entry for task, entry in CATALOGUE.items() if entry.kind != "bounds"}
+
+
+# ----------------------------------------------------------------- rows of one's own
+
+
+class RawRows(Task):
+    """A test's own matrices as a task: lower <= A vdot <= upper."""
+
+    def __init__(self, name: str, A, lower, upper=None) -> None:
+        super().__init__(name, "-")
+        self.A, self.lower = np.array(A, dtype=float), np.array(lower, dtype=float)
+        self.upper = self.lower if upper is None else np.array(upper, dtype=float)
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        return tuple(f"{self.name} {i}" for i in range(self.lower.size))
+
+    def update(self, state: State, rows: Rows) -> None:
+        rows.A[:], rows.lower[:], rows.upper[:] = self.A, self.lower, self.upper
+
+
+Levels = list[tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+
+def hierarchy_of(levels: Levels) -> Hierarchy:
+    return Hierarchy(
+        *(Level.of(RawRows(f"level {k}", *rows)) for k, rows in enumerate(levels, 1))
+    )
+
+
+def random_equalities(rng: Rng, n: int, count: int | None = None) -> Levels:
+    """3 to 5 levels; every other one is singular, or conflicts with those above."""
+    levels: Levels = []
+    for _ in range(count or int(rng.integers(3, 6))):
+        m = int(rng.integers(1, 5))
+        A = rng.normal(size=(m, n))
+        kind = rng.choice(["plain", "plain", "singular", "conflict", "zero", "mixed"])
+        above = np.vstack([a for a, _, _ in levels]) if levels else None
+        if kind == "singular":
+            A = rng.normal(size=(m, 1)) @ rng.normal(size=(1, n))
+        elif kind == "zero":
+            A[int(rng.integers(m))] = 0.0
+        elif kind == "conflict" and above is not None:
+            A = rng.normal(size=(m, above.shape[0])) @ above
+        elif kind == "mixed" and above is not None:
+            A[0] = above[int(rng.integers(above.shape[0]))]
+        b = 5.0 * rng.normal(size=m)
+        levels.append((A, b, b.copy()))
+    return levels
+
+
+def random_inequalities(rng: Rng, n: int) -> Levels:
+    """3 to 5 levels, each with bounds on one or both sides, and some equalities."""
+    levels: Levels = []
+    for A, b, _ in random_equalities(rng, n):
+        sides = rng.choice(["both", "lower", "upper", "equal"], b.size)
+        sides[int(rng.integers(b.size))] = rng.choice(["both", "lower", "upper"])
+        width = rng.exponential(2.0, b.size)
+        lower = np.where(sides == "upper", -np.inf, b)
+        upper = np.where(sides == "lower", np.inf, b + width)
+        equal = sides == "equal"
+        levels.append((A, lower, np.where(equal, b, upper)))
+    return levels
