@@ -16,9 +16,9 @@ from sims.benchmark import measure
 from sims.demo import Options, Outcome
 from sims.metrics import Metric, format_value, table, to_json, verdict
 from sims.registry import cell_names, find_demo
-from sims.report import write_report
+from sims.report.page import write_report
+from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
-from sims.snapshot import NoDisplay, write_png
 from wbc import InputError
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+import warnings
 from typing import Any, final
 
 import numpy as np
@@ -114,8 +115,20 @@ class Viewer:
 def open_viewer(cell: Cell) -> Viewer | None:
     """A window on the cell, or None with a word on standard error where none opens."""
     try:
+        _need_display()
         return Viewer(cell)
-    except Exception as error:  # each platform fails with a type of its own
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        sys.stderr.write(f"wbc: no display for --view ({reason}); running headless\n")
+    except (ImportError, RuntimeError) as error:
+        sys.stderr.write(f"wbc: no display for --view ({error}); running headless\n")
         return None
+
+
+def _need_display() -> None:
+    """Ask GLFW first: MuJoCo's viewer ends the whole process where GLFW fails."""
+    import glfw
+
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        ready = glfw.init()
+    if not ready:
+        reason = str(said[-1].message) if said else "GLFW does not start"
+        raise RuntimeError(reason)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tasks.path import Path
 from wbc import PD, Damper, MotionTask, Rows, State
-from wbc.arrays import positive
+from wbc.arrays import frozen, positive
 from wbc.errors import InputError
 
 __all__ = ["PointOnCurve", "TravelSpeed"]
@@ -85,7 +85,8 @@ class TravelSpeed(MotionTask):
         name: "<frame> speed" by default.
 
     Raises:
-        InputError: a number that is not positive, or an end beyond the path.
+        InputError: a number that is not positive, a start that is not finite, or an
+            end beyond the path.
     """
 
     def __init__(
@@ -103,7 +104,8 @@ class TravelSpeed(MotionTask):
         law = Damper(positive(gain, "gain"))
         super().__init__(name or f"{frame} speed", "m/s", ("along",), law, (frame,))
         self.path, self.speed = path, positive(speed, "speed")
-        self.ramp, self.start = positive(ramp, "ramp"), float(start)
+        self.ramp = positive(ramp, "ramp")
+        self.start = float(frozen(start, (), "start"))
         self.end = path.length if end is None else positive(end, "end")
         if self.end > path.length:
             raise InputError(

@@ -11,8 +11,8 @@ from tasks.geometry import perpendicular
 from tasks.path import Path, PathPoint
 from wbc import PD, FrameState, MotionTask, Rows, State
 from wbc.arrays import Array, frozen, unit
-from wbc.linalg import cross
 from wbc.errors import InputError
+from wbc.linalg import cross
 
 __all__ = ["AxisAlignment", "AxisAlongPath"]
 

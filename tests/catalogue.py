@@ -151,7 +151,7 @@ def _along(state: State, rng: Rng, aligned: bool) -> Subject:
     F = state.frame(frame)
     axis = rng.normal(size=3)
     if aligned:
-        axis = F.R.T @ draft.direction_at(path.follow(F).point)[0]
+        axis = F.R.T @ draft.direction_at(path.at(path.locate(F.p)))[0]
     return Subject(
         tasks.AxisAlongPath(frame, path, work=work, travel=travel, axis=axis)
     )
@@ -177,10 +177,12 @@ CATALOGUE: dict[type[Task], Entry] = {
     tasks.FrameOrientation: Entry("near zero", _orientation),
     tasks.FramePose: Entry("near zero", _pose),
     tasks.PointOnPoint: Entry(
-        "exact", lambda s, g, z: Subject(tasks.PointOnPoint(tip(s.robot), _near(s, g, z)))
+        "exact",
+        lambda s, g, z: Subject(tasks.PointOnPoint(tip(s.robot), _near(s, g, z))),
     ),
     tasks.PointOnLine: Entry(
-        "exact", lambda s, g, z: Subject(tasks.PointOnLine(tip(s.robot), _line(s, g, z)))
+        "exact",
+        lambda s, g, z: Subject(tasks.PointOnLine(tip(s.robot), _line(s, g, z))),
     ),
     tasks.PointOnPlane: Entry(
         "exact",

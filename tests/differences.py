@@ -64,7 +64,11 @@ def check_jacobian_of_rate(subject: Subject, state: State) -> None:
         down = rows_at(subject, robot, state.q, state.v - e).rate
         size = 1.0 + np.abs(np.concatenate([up, down])).max()
         assert_allclose(
-            (up - down) / 2, now.J[:, i], rtol=0, atol=AFFINE * size, err_msg="J of rate"
+            (up - down) / 2,
+            now.J[:, i],
+            rtol=0,
+            atol=AFFINE * size,
+            err_msg="J of rate",
         )
 
 

@@ -100,9 +100,12 @@ def per_row(value: ArrayLike, what: str) -> Array:
     """A gain for all rows (shape ()) or one for each row (m,), never negative.
 
     Raises:
-        InputError: more than one axis, not finite, or negative.
+        InputError: not numeric, more than one axis, not finite, or negative.
     """
-    gains = np.array(value, dtype=np.float64)
+    try:
+        gains = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{what} must be a number or one number a row.") from error
     if gains.ndim > 1:
         raise InputError(f"{what} must be a number or one number a row.")
     if not np.isfinite(gains).all() or (gains < 0).any():

@@ -108,14 +108,15 @@ class Controller:
             answer = self._solver.solve()
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        torque = stack.torque(answer.vdot)
+        finite = np.isfinite(answer.vdot).all()
+        torque = stack.torque(answer.vdot) if finite else answer.vdot
         if not np.isfinite(torque).all():
             return self._hold(q, v, Status.SOLVER_FAILED, "a torque is not finite")
         return Solution(stack, torque, answer, answer.status)
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        if not (np.isfinite(q.sum() + v.sum()) and np.isfinite(t)):
+        if not (np.isfinite(q).all() and np.isfinite(v).all() and np.isfinite(t)):
             return False
         return all(np.isfinite(w).all() for w in wrenches.values())
 

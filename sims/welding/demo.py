@@ -10,10 +10,10 @@ from sims import welding
 from sims.cell import ArmCell
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
-from sims.replay import Replay, Trace
+from sims.report.replay import Replay, Trace
+from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import run
-from sims.snapshot import Image, render
 from sims.viewer import Viewer, open_viewer
 from sims.welding.figures import figures
 from sims.welding.metrics import metrics

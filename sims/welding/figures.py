@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sims.figures import heat_rows, lines3d, time_series
 from sims.log import Log
+from sims.report.figures import heat_rows, lines3d, time_series
 from sims.welding.metrics import across, speed_along, travel_angle
 from sims.welding.parts import CURVE_SPEED, SEAM_SPEED, TIP, TRAVEL
 from sims.welding.workpiece import CURVE, POINT, SEAM

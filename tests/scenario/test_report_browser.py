@@ -10,10 +10,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from sims.figures import time_series
 from sims.metrics import Metric
-from sims.replay import Replay, Trace
-from sims.report import write_report
+from sims.report.figures import time_series
+from sims.report.page import write_report
+from sims.report.replay import Replay, Trace
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next((path for path in map(shutil.which, NAMES) if path), None)

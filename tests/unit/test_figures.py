@@ -8,8 +8,8 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from sims.figures import heat_rows, lines3d, time_series, xy
-from sims.thinning import columns, thin_curve, thin_series
+from sims.report.figures import heat_rows, lines3d, time_series, xy
+from sims.report.thinning import columns, thin_curve, thin_series
 from wbc.errors import InputError
 
 TIMES = np.arange(60_000) / 1000.0

@@ -13,7 +13,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from sims.axes import (
+from sims.report.axes import (
     PALETTE,
     Bounds,
     Span,
@@ -24,8 +24,8 @@ from sims.axes import (
     styles,
     vector,
 )
-from sims.svg import styled, to_svg
-from sims.thinning import columns, thin_curve, thin_series
+from sims.report.svg import styled, to_svg
+from sims.report.thinning import columns, thin_curve, thin_series
 from wbc.arrays import Array
 from wbc.errors import InputError
 

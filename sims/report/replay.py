@@ -24,10 +24,10 @@ import numpy as np
 from matplotlib.colors import to_hex
 from numpy.typing import ArrayLike
 
-from sims.axes import PALETTE
-from sims.replay_motion import Motion, frames, play_back, track
-from sims.replay_scene import Store, geoms, soft_bodies
-from sims.thinning import thin_curve
+from sims.report.axes import PALETTE
+from sims.report.motion import Motion, frames, play_back, track
+from sims.report.shapes import Store, geoms, soft_bodies
+from sims.report.thinning import thin_curve
 from wbc.arrays import Array, frozen
 from wbc.errors import InputError, WbcError
 
@@ -132,7 +132,7 @@ class Replay:
 
     def html(self) -> str:
         """A complete document, fit for a file or for the `srcdoc` of an iframe."""
-        here = files("sims")
+        here = files("sims.report")
         template = Template(here.joinpath("replay.html").read_text(encoding="utf-8"))
         return template.substitute(
             viewer=_viewer_script(),

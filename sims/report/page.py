@@ -64,7 +64,7 @@ def write_report(
     page = _PAGE.format(
         title=html.escape(title),
         summary=html.escape(summary),
-        style=files("sims").joinpath("report.css").read_text(encoding="utf-8"),
+        style=files("sims.report").joinpath("page.css").read_text(encoding="utf-8"),
         verdict=_verdict(metrics),
         body=body + _figures(figures),
     )

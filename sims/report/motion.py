@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sims.replay_scene import Store, visible_geoms
+from sims.report.shapes import Store, visible_geoms
 from wbc.arrays import Array
 
 __all__ = ["Motion", "frames", "play_back", "track"]
