@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 __all__ = ["add_box", "add_cylinder", "add_room"]
 
-FLOOR = (0.80, 0.82, 0.85, 1.0)
+FLOOR = (0.62, 0.65, 0.69, 1.0)
 SKY = (0.62, 0.72, 0.84)
 
 

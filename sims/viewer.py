@@ -7,6 +7,7 @@ import time
 import warnings
 from typing import Any, final
 
+import mujoco
 import numpy as np
 import pinocchio as pin
 
@@ -77,14 +78,23 @@ class Viewer:
     Space pauses, the arrow and page keys jog. Closing the window ends the run.
     """
 
-    def __init__(self, cell: Cell) -> None:
-        import mujoco.viewer
+    def __init__(self, cell: Cell, camera: mujoco.MjvCamera | None = None) -> None:
+        import mujoco.viewer  # opens the window system, which a headless run lacks
 
         self.jogger = Jogger()
         self._paused, self._due = False, 0.0
         self._window: Any = mujoco.viewer.launch_passive(
-            cell.model, cell.data, key_callback=self._key
+            cell.model,
+            cell.data,
+            key_callback=self._key,
+            show_left_ui=False,
+            show_right_ui=False,
         )
+        if camera is not None:
+            with self._window.lock():
+                view = self._window.cam
+                view.lookat[:], view.distance = camera.lookat, camera.distance
+                view.azimuth, view.elevation = camera.azimuth, camera.elevation
 
     def _key(self, key: int) -> None:
         if key == ord(" "):
@@ -112,11 +122,13 @@ class Viewer:
         self._window.close()
 
 
-def open_viewer(cell: Cell) -> Viewer | None:
+def open_viewer(
+    cell: Cell, camera: mujoco.MjvCamera | None = None
+) -> Viewer | None:
     """A window on the cell, or None with a word on standard error where none opens."""
     try:
         _need_display()
-        return Viewer(cell)
+        return Viewer(cell, camera)
     except (ImportError, RuntimeError) as error:
         sys.stderr.write(f"wbc: no display for --view ({error}); running headless\n")
         return None

@@ -7,6 +7,7 @@ into a `Solution`; a `Controller` does so once a tick.
 
 from wbc.certificate import Certificate
 from wbc.controller import Controller, resolve
+from wbc.damped import DampedInverse
 from wbc.errors import (
     InputError,
     ModelError,
@@ -18,7 +19,7 @@ from wbc.errors import (
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
 from wbc.law import PD, Damper, Law
-from wbc.nullspace import Damping, NullSpace
+from wbc.nullspace import NullSpace
 from wbc.qp import backends
 from wbc.resolver import Resolver, Status
 from wbc.robot import Robot
@@ -32,8 +33,8 @@ __all__ = [
     "PD",
     "Certificate",
     "Controller",
+    "DampedInverse",
     "Damper",
-    "Damping",
     "FrameState",
     "HierarchicalQP",
     "Hierarchy",

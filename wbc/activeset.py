@@ -103,7 +103,9 @@ def _ask(problem: LevelProblem, backend: QpBackend) -> tuple[Array, Sides]:
     )
     lower = np.concatenate([problem.i_lower * size, problem.c_lower])
     upper = np.concatenate([problem.i_upper * size, problem.c_upper])
-    x, duals = backend.solve(P, q, G, lower, upper)
+    slack = np.clip(0.0, problem.i_lower, problem.i_upper) * size
+    start = np.concatenate([np.zeros(r), slack])
+    x, duals = backend.solve(P, q, G, lower, upper, start)
     return _feasible(problem, x[:r]), _held(problem, duals[b:])
 
 
@@ -134,8 +136,9 @@ def _held(problem: LevelProblem, duals: Array) -> Sides:
 def _descend(problem: LevelProblem, z: Array, held: Sides) -> LevelPoint | None:
     """Primal active-set steps until the optimality conditions hold."""
     rounds = 30 + 5 * (held.size + problem.i_lower.size)
+    ahead = np.zeros_like(z)
     for round_ in range(rounds):
-        violated = _violated(problem, z)
+        violated = _violated(problem, z, ahead)
         point = minimise_on(problem, z, WorkingSet(held, violated))
         found = faults(problem, point)
         if found.none:
@@ -143,8 +146,8 @@ def _descend(problem: LevelProblem, z: Array, held: Sides) -> LevelPoint | None:
         least = not (found.beyond.any() or found.met.any())
         turn = 1.0 if least else _line_search(problem, z, point.z)
         step, row, side = _reach(problem, z, point.z, held)
-        moved = min(step, turn)
-        z = z + moved * (point.z - z)
+        ahead = point.z - z
+        z = z + min(step, turn) * ahead
         if step < turn:
             held = held.copy()
             held[row] = side
@@ -156,12 +159,13 @@ def _descend(problem: LevelProblem, z: Array, held: Sides) -> LevelPoint | None:
     return None
 
 
-def _violated(problem: LevelProblem, z: Array) -> Sides:
-    """Which of the level's rows are beyond a bound at z."""
-    value = problem.I @ z
+def _violated(problem: LevelProblem, z: Array, ahead: Array) -> Sides:
+    """Which of the level's rows are beyond a bound at z, or at it and leaving."""
+    value, slope = problem.I @ z, problem.I @ ahead
     norm = np.linalg.norm(problem.I, axis=1)
     gap = STEP * (norm + np.abs(value))
-    above, below = value > problem.i_upper + gap, value < problem.i_lower - gap
+    above = value > problem.i_upper + np.where(slope > 0.0, -gap, gap)
+    below = value < problem.i_lower - np.where(slope < 0.0, -gap, gap)
     sides: Sides = above.astype(np.int8) - below.astype(np.int8)
     return sides
 
@@ -184,7 +188,7 @@ def _reach(
 
 
 def _line_search(problem: LevelProblem, z: Array, target: Array) -> float:
-    """The step in (0, 1] towards `target` at which the level's cost is least.
+    """The step in [0, 1] towards `target` at which the level's cost is least.
 
     The cost is convex and piecewise quadratic, so its slope is continuous and grows:
     it is followed from one change of a row's status to the next. A row that is at its
@@ -204,7 +208,9 @@ def _line_search(problem: LevelProblem, z: Array, target: Array) -> float:
     beyond = rows - np.clip(rows, problem.i_lower, problem.i_upper)
     climb = at_start + steps * curvature + beyond @ slope
     k = int(np.argmax(climb > 0.0))
-    if climb[k] <= 0.0 or k == 0:
+    if climb[k] <= 0.0:
         return 1.0
+    if k == 0:
+        return 0.0
     share = climb[k - 1] / (climb[k - 1] - climb[k])
     return float(steps[k - 1] + share * (steps[k] - steps[k - 1]))

@@ -93,7 +93,7 @@ def norm(A: Array) -> float:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Product a x b of two (3,) vectors, without the generality that np.cross pays for."""
+    """Product a x b of two (3,) vectors; np.cross pays for its generality."""
     a0, a1, a2 = a
     b0, b1, b2 = b
     return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])

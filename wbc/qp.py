@@ -51,9 +51,11 @@ class QpBackend:
         self._options = OPTIONS.get(name, {})
 
     def solve(
-        self, P: Array, q: Array, G: Array, lower: Array, upper: Array
+        self, P: Array, q: Array, G: Array, lower: Array, upper: Array, start: Array
     ) -> tuple[Array, Array]:
         """The minimiser (n,) and the multipliers of G's rows, positive at the upper.
+
+        `start` (n,) is a feasible point, handed to backends that can begin at one.
 
         Raises:
             SolverError: the backend found none; its own exceptions never leak.
@@ -67,7 +69,9 @@ class QpBackend:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # sparse conversions, inexact status
-                found = qpsolvers.solve_problem(problem, self.name, **self._options)
+                found = qpsolvers.solve_problem(
+                    problem, self.name, initvals=start, **self._options
+                )
         except Exception as error:  # each backend raises its own kinds
             raise SolverError(f"QP backend '{self.name}' raised: {error}") from error
         x = found.x

@@ -24,6 +24,7 @@ Limit: TypeAlias = ArrayLike | Mapping[str, float] | None
 
 BRAKING_SAMPLES = 256
 BRAKING_RESERVE = 0.5
+MASSLESS = 1e-14  # least over largest eigenvalue of M that is round-off
 
 
 @final
@@ -93,7 +94,7 @@ class Robot:
             "acceleration_limit": _first(
                 acceleration_limit, mjcf.numerics.get("acceleration_limit")
             ),
-            "torque_limit": _first(torque_limit, mjcf.torque or None),
+            "torque_limit": torque_limit,  # over the model's, which are the motors'
         }
         home = mjcf.home if q_home is None else q_home
         return _assemble(mjcf.model, name, home, limits, mjcf.text, mjcf.notes)
@@ -204,6 +205,7 @@ def _assemble(
 ) -> Robot:
     joints = _joint_names(model)
     n = len(joints)
+    _refuse_massless(model, joints)
     box = _position_limits(model, joints, limits["position_limit"])
     tau = _limit("torque_limit", joints, limits["torque_limit"], model.upperEffortLimit)
     v = _limit(
@@ -251,6 +253,26 @@ def _joint_names(model: pin.Model) -> tuple[str, ...]:
     if model.nv == 0:
         raise ModelError("the model has no joints.")
     return tuple(model.names[1:])
+
+
+def _refuse_massless(model: pin.Model, joints: Sequence[str]) -> None:
+    """Refuse a joint that moves nothing: no finite torque fits its acceleration."""
+    n = model.nv
+    # One generic posture will do: M is analytic, so singular here is singular always.
+    q = np.random.default_rng(0).uniform(-1.0, 1.0, n)
+    M = _inertia(model, model.createData(), q)
+    values, vectors = np.linalg.eigh(M)
+    if values[0] <= MASSLESS * values[-1]:
+        joint = joints[int(np.argmax(np.abs(vectors[:, 0])))]
+        raise ModelError(
+            f"joint '{joint}' moves no inertia: nothing behind it has any about its "
+            "axis. Give its link mass and inertia, or make it a fixed joint."
+        )
+
+
+def _inertia(model: pin.Model, data: pin.Data, q: Array) -> Array:
+    M = np.array(pin.crba(model, data, q)).reshape(model.nv, model.nv)
+    return np.triu(M) + np.triu(M, 1).T
 
 
 def _position_limits(
@@ -335,13 +357,13 @@ def braking_acceleration(
     data, rng = model.createData(), np.random.default_rng(0)
     best = np.full(n, np.inf)
     for q in rng.uniform(lower, upper, (BRAKING_SAMPLES, n)):
-        M = np.array(pin.crba(model, data, q))
-        M = np.triu(M) + np.triu(M, 1).T
+        M = _inertia(model, data, q)
         spare = tau_max - np.abs(pin.computeGeneralizedGravity(model, data, q))
         if (spare <= 0).any():
+            joint = model.names[1 + int(np.argmin(spare))]
             raise ModelError(
-                f"torque_limit cannot hold joint {int(np.argmin(spare)) + 1} against "
-                "gravity everywhere: give acceleration_limit yourself."
+                f"torque_limit cannot hold joint '{joint}' against gravity "
+                "everywhere: give acceleration_limit yourself."
             )
         direction = tau_max / np.diag(M)
         best = np.minimum(best, direction * (spare / (np.abs(M) @ direction)).min())

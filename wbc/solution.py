@@ -55,8 +55,8 @@ class Solution:
         acceleration: (n,) joint accelerations that they cause in the model, NaN
             after a fallback.
         status: how the tick ended.
-        ranks: for each level, the independent directions that it could use; fewer
-            than in the tick before means that the robot lost a direction.
+        ranks: for each level, the independent directions that its equalities and its
+            active bounds could use.
         message: what went wrong, empty if nothing did.
     """
 
@@ -86,6 +86,23 @@ class Solution:
     def ok(self) -> bool:
         """Whether the resolver answered."""
         return self.status in (Status.SOLVED, Status.INCOMPLETE)
+
+    @property
+    def lost(self) -> tuple[int, ...]:
+        """For each level, how many of its equality rows had no direction of their own.
+
+        They repeat another row, are held by a level above, or the robot is singular
+        there. What of their wish was met all the same, `report` tells.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        stack = self._fresh()
+        equal = stack.lower == stack.upper
+        return tuple(
+            max(int(np.count_nonzero(equal[where])) - rank, 0)
+            for where, rank in zip(stack.levels, self.ranks, strict=True)
+        )
 
     def certificate(self) -> Certificate:
         """Proof of lexicographic optimality; `.worst` is 0 for a perfect one.

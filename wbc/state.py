@@ -57,7 +57,8 @@ class State:
     """
 
     __slots__ = (
-        "M", "_data", "_frames", "_memory", "_zero", "dt", "h", "q", "robot", "t", "v", "wrenches",
+        "M", "_data", "_frames", "_memory", "_zero", "dt", "h", "q", "robot", "t", "v",
+        "wrenches",
     )  # fmt: skip
 
     def __init__(self, robot: Robot, dt: float) -> None:
@@ -121,6 +122,7 @@ class State:
         model, data = self.robot.model, self._data
         X_WF = pin.updateFramePlacement(model, data, index)
         J = pin.getFrameJacobian(model, data, index, WORLD_ALIGNED)
+        J = J.reshape(6, model.nv)  # the binding flattens a single column
         drift = pin.getFrameClassicalAcceleration(model, data, index, WORLD_ALIGNED)
         return FrameState(
             np.array(X_WF.translation),

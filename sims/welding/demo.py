@@ -31,7 +31,7 @@ def _run(options: Options) -> Outcome:
     """Weld a spot, a seam with and without jogging, and a saddle."""
     arm = racer.load()
     cell = welding.cell(arm, mismatch=options.mismatch, seed=options.seed)
-    window = open_viewer(cell) if options.view else None
+    window = open_viewer(cell, _camera()) if options.view else None
     logs: dict[str, Log] = {}
     jobs = parts(arm, window.jogger if window else None)
     for part in jobs:

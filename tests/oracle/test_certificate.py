@@ -170,7 +170,10 @@ def brute_force(bounds, targets):
 def test_bounds_over_a_target_are_what_slsqp_finds(seed):
     rng = np.random.default_rng(seed)
     C, A = rng.normal(size=(6, 3)), rng.normal(size=(4, 3))
-    levels = [rows(C, -rng.uniform(0.1, 1, 6), rng.uniform(0.1, 1, 6)), rows(A, 3 * rng.normal(size=4))]
+    levels = [
+        rows(C, -rng.uniform(0.1, 1, 6), rng.uniform(0.1, 1, 6)),
+        rows(A, 3 * rng.normal(size=4)),
+    ]
     expected = brute_force(*levels)
     assert certify(levels, expected).holds(1e-4)
     assert_allclose(solve_hierarchy(levels).x, expected, rtol=0, atol=BRUTE_FORCE)

@@ -235,13 +235,11 @@ def test_the_least_norm_is_taken_within_the_bounds(backend):
 )
 def test_matrices_that_cannot_be_meant_are_refused(levels, message):
 
-
     with pytest.raises(InputError, match=message):
         solve_hierarchy(levels)
 
 
 def test_an_unknown_backend_is_refused_with_the_installed_ones():
-
 
     with pytest.raises(UnknownName, match=r"unknown QP backend 'proxpq'.*'proxqp'"):
         solve_hierarchy([([[1.0]], [0.0], [0.0])], "proxpq")

@@ -117,7 +117,8 @@ def test_started_outside_a_position_limit_the_robot_comes_back(
     q = np.clip(arm.q_home, arm.q_min + 0.3, arm.q_max - 0.3)
     q[0], q[1] = arm.q_max[0] + 0.05, arm.q_min[1] - 0.03
     v = np.zeros(arm.nv)
-    for _, _, q, v, solution in wild.run(q, v, 250, rng):  # noqa: B007
+    for _, _, nq, nv, solution in wild.run(q, v, 250, rng):
+        q, v = nq, nv
         assert solution.ok, solution.message
         assert (np.abs(solution.torque) <= arm.tau_max * (1 + TORQUE)).all()
         assert outside(v, -arm.v_max, arm.v_max) <= JOINT
@@ -138,10 +139,10 @@ def test_started_beyond_a_velocity_limit_the_robot_slows_down(
     v = np.zeros(arm.nv)
     v[0] = 1.05 * arm.v_max[0]
     speeds = [v[0]]
-    for _, _, _, v, solution in wild.run(q, v, 100, rng):
+    for *_, nv, solution in wild.run(q, v, 100, rng):
         assert solution.ok, solution.message
         assert (np.abs(solution.torque) <= arm.tau_max * (1 + TORQUE)).all()
-        speeds.append(float(np.abs(v / arm.v_max).max()))
+        speeds.append(float(np.abs(nv / arm.v_max).max()))
     assert speeds[-1] <= 1.0 + JOINT
     assert wild.controller.failures == 0
 

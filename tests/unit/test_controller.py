@@ -190,9 +190,7 @@ def test_lost_positions_are_held_by_the_last_known_gravity():
     robot, control = seven_axis(), controller()
     q = HOME + 0.2
     bad = controller_loses(control, q)
-    np.testing.assert_allclose(
-        bad.torque, robot.state(q).gravity(), rtol=0, atol=1e-9
-    )
+    np.testing.assert_allclose(bad.torque, robot.state(q).gravity(), rtol=0, atol=1e-9)
 
 
 def controller_loses(control: Controller, q):
@@ -332,11 +330,6 @@ def test_a_frame_of_another_robot_is_refused_with_those_that_exist():
 def test_joints_of_another_robot_are_refused_with_those_that_exist():
     with pytest.raises(UnknownName, match=r"unknown joint 'a1'.*joint1"):
         Controller(six_axis(), Damping(joints=["a1"]))
-
-
-def test_an_empty_list_of_joints_is_refused():
-    with pytest.raises(InputError, match="joint"):
-        Controller(six_axis(), Damping(joints=[]) >> Posture())
 
 
 # ---------------------------------------------------------------- what a solution says

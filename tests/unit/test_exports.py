@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
+from importlib.metadata import (
+    PackageNotFoundError,
+    distribution,
+    packages_distributions,
+)
 
 import pytest
 

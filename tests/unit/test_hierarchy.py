@@ -73,7 +73,7 @@ def test_the_line_of_the_design_reads_as_meant():
 
 def test_operators_leave_their_operands_alone():
     level, hierarchy = a + b, a >> b
-    level + c, 3.0 * level, hierarchy >> c  # noqa: B018 - no effect is the point
+    level + c, 3.0 * level, hierarchy >> c
     assert weights(level) == [1.0, 1.0]
     assert names(hierarchy) == [["a"], ["b"]]
 

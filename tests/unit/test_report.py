@@ -9,11 +9,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from sims.figures import time_series
 from sims.metrics import Metric
-from sims.replay import Marker, Replay, Trace
-from sims.report import write_report
-from sims.snapshot import NoDisplay, render, write_png
+from sims.report.figures import time_series
+from sims.report.page import write_report
+from sims.report.replay import Marker, Replay, Trace
+from sims.report.snapshot import NoDisplay, render, write_png
 from wbc.errors import InputError
 
 MODEL = """
@@ -308,7 +308,7 @@ def test_without_opengl_the_error_is_ours(model, monkeypatch):
     def fails(*_):
         raise AttributeError("glGetError")
 
-    monkeypatch.setattr("sims.snapshot._context", fails)
+    monkeypatch.setattr("sims.report.snapshot._context", fails)
     with pytest.raises(NoDisplay, match=r"glGetError.*MUJOCO_GL"):
         render(model, mujoco.MjData(model))
 
