@@ -122,9 +122,7 @@ class Viewer:
         self._window.close()
 
 
-def open_viewer(
-    cell: Cell, camera: mujoco.MjvCamera | None = None
-) -> Viewer | None:
+def open_viewer(cell: Cell, camera: mujoco.MjvCamera | None = None) -> Viewer | None:
     """A window on the cell, or None with a word on standard error where none opens."""
     try:
         _need_display()

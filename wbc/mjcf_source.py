@@ -18,6 +18,7 @@ SERVOS: Final = (
     "position", "velocity", "intvelocity", "damper", "cylinder", "muscle",
     "adhesion", "dcmotor", "plugin",
 )  # fmt: skip
+GAINS: Final = {"position": "kp", "velocity": "kv"}  # their names of gainprm
 # MuJoCo keeps one set of defaults for all actuators; a shortcut such as <motor>
 # writes it like <general>, and resets what makes it that kind of actuator.
 IMPLIED: Final[dict[str, dict[str, str]]] = {
@@ -25,6 +26,7 @@ IMPLIED: Final[dict[str, dict[str, str]]] = {
         "dyntype": "none", "gaintype": "fixed", "gainprm": "1", "biastype": "none",
     },
     **{tag: {"gaintype": tag, "biastype": tag} for tag in SERVOS},
+    **{tag: {"gaintype": "fixed", "biastype": "affine"} for tag in GAINS},
 }  # fmt: skip
 SHARED: Final = {
     **dict.fromkeys(TENDONS, "tendon"),
@@ -74,7 +76,7 @@ class Source:
         merged = {kind: dict(values) for kind, values in inherited.items()}
         for child in node:
             if child.tag != "default":
-                values = IMPLIED.get(child.tag, {}) | child.attrib
+                values = self.own(child)
                 merged.setdefault(SHARED.get(child.tag, child.tag), {}).update(values)
         self._classes[name] = merged
         for child in node.iterfind("default"):
@@ -100,7 +102,9 @@ class Source:
 
     def own(self, element: ET.Element) -> Attributes:
         """Attributes of the element itself, with what its tag implies."""
-        return IMPLIED.get(element.tag, {}) | element.attrib
+        gain = element.get(GAINS.get(element.tag, ""))
+        own = {} if gain is None else {"gainprm": gain}
+        return own | IMPLIED.get(element.tag, {}) | element.attrib
 
     def inherited(self, element: ET.Element) -> Attributes:
         """Attributes that its default class gives an element.

@@ -114,8 +114,8 @@ def quaternion(source: Source, element: ET.Element) -> Array:
     given = _orientations(own) or _orientations(inherited)
     if len(given) > 1:
         raise ModelError(
-            f"{label(element)} has more than one orientation ({', '.join(given)}): "
-            "keep one."
+            f"{label(element)} has more than one orientation ({', '.join(given)}), "
+            "counting its default classes: keep one."
         )
     if not given:
         return np.array([1.0, 0.0, 0.0, 0.0])

@@ -418,6 +418,11 @@ TORQUES = {
         '<motor joint="j1"/>', 7.0),
     "a general without bias is a motor": (
         "", '<general joint="j1" ctrlrange="-2 2" gainprm="50" gear="-3"/>', 300.0),
+    "a general without bias keeps the gain of a position default": (
+        '<default><position kp="5" ctrlrange="-7 7"/></default>',
+        '<general joint="j1" biastype="none"/>',
+        35.0,
+    ),
     "a servo is limited by force alone": (
         "", '<position joint="j1" ctrlrange="-2 2" forcerange="-5 5" gear="2"/>', 10.0),
     "the tighter of force and control": (
