@@ -16,6 +16,7 @@ from wbc.errors import (
     UnknownName,
     WbcError,
 )
+from wbc.explain import ActiveBound, Blocker, Explanation, TaskExplanation
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
 from wbc.law import PD, Damper, Law
@@ -31,10 +32,13 @@ from wbc.weighted import WeightedQP
 
 __all__ = [
     "PD",
+    "ActiveBound",
+    "Blocker",
     "Certificate",
     "Controller",
     "DampedInverse",
     "Damper",
+    "Explanation",
     "FrameState",
     "HierarchicalQP",
     "Hierarchy",
@@ -54,6 +58,7 @@ __all__ = [
     "State",
     "Status",
     "Task",
+    "TaskExplanation",
     "TaskReport",
     "UnknownName",
     "WbcError",

@@ -10,14 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, BoolArray
-from wbc.cascade import Cascade, LevelRows
+from wbc.cascade import Cascade, CascadeResult, LevelRows
 from wbc.certificate import Certificate, certify
 from wbc.errors import InputError
+from wbc.lexicographic import Lexicographic
 from wbc.qp import DEFAULT_BACKEND, QpBackend
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
 
 __all__ = ["HierarchicalQP", "HierarchyResult", "solve_hierarchy"]
+
+AT_BOUND = 1e-9
+"""A row this close to a bound, relative to its value, counts as active."""
 
 
 @final
@@ -28,23 +32,42 @@ class HierarchicalQP(Resolver):
     shows as the slack of its level. Freedom left over minimises vdot^T M vdot.
 
     Args:
-        backend: a QP backend of `wbc.qp.backends()`; ProxQP by default.
+        backend: None for the compiled solver of `wbc.lexicographic`; or a QP backend
+            of `wbc.qp.backends()`, for a cascade of one small QP a level.
 
     Raises:
         UnknownName: the backend is not installed.
     """
 
-    def __init__(self, backend: str = DEFAULT_BACKEND) -> None:
-        self._backend = QpBackend(backend)
-        self.name = "hqp" if backend == DEFAULT_BACKEND else f"hqp:{backend}"
+    def __init__(self, backend: str | None = None) -> None:
+        self._backend = None if backend is None else QpBackend(backend)
+        self.name = "hqp" if backend is None else f"hqp:{backend}"
 
     def start(self, stack: Stack) -> Solver:
         """A solver with a warm start of its own."""
-        return _Strict(self._backend, stack)
+        if self._backend is None:
+            return _Compiled(stack)
+        return _Cascading(self._backend, stack)
 
 
-class _Strict(Solver):
-    """The cascade at work on a stack, in the coordinates of least kinetic norm."""
+class _Compiled(Solver):
+    """The compiled solver at work, in the coordinates of least kinetic norm."""
+
+    def __init__(self, stack: Stack) -> None:
+        sizes = [where.stop - where.start for where in stack.levels]
+        self._stack, self._solver = stack, Lexicographic(sizes, stack.robot.nv)
+
+    def solve(self) -> Answer:
+        """Resolve the present rows."""
+        stack, solver = self._stack, self._solver
+        done = solver.solve(stack.Ay, stack.lower, stack.upper)
+        status = Status.SOLVED if done else Status.INCOMPLETE
+        vdot = stack.L_inv.T @ solver.x
+        return Answer(vdot, solver.ranks, status, solver.slack.copy())
+
+
+class _Cascading(Solver):
+    """The cascade at work, in the same coordinates."""
 
     def __init__(self, backend: QpBackend, stack: Stack) -> None:
         self._stack, self._cascade = stack, Cascade(backend)
@@ -69,7 +92,7 @@ class HierarchyResult:
         slacks: for each level (m_k,) s_k with lower_k <= A_k x + s_k <= upper_k.
         active: for each level (m_k,) whether the row is at a bound or beyond it.
         ranks: for each level, the independent directions it could use.
-        status: SOLVED.
+        status: SOLVED; INCOMPLETE where the compiled solver ran out of iterations.
     """
 
     x: Array
@@ -98,12 +121,12 @@ def solve_hierarchy(
     Args:
         levels: (A (m, n), lower (m,), upper (m,)) from the most important down;
             an equality where lower = upper, +-inf where there is no bound.
-        backend: a QP backend; ProxQP by default.
+        backend: None for the compiled solver, or a QP backend for a cascade.
 
     Raises:
         InputError: no level, shapes that do not fit, NaN, or lower > upper.
         UnknownName: the backend is not installed.
-        SolverError: the backend led to no optimal point.
+        SolverError: the backend of a cascade led to no optimal point.
 
     Example:
         >>> result = solve_hierarchy([([[1.0, 0.0]], [-1.0], [1.0]),
@@ -112,17 +135,37 @@ def solve_hierarchy(
         [1.0, 2.0]
     """
     rows = _checked(levels)
-    n = rows[0][0].shape[1]
-    result = Cascade(QpBackend(backend or DEFAULT_BACKEND)).solve(rows, n)
+    result, status = (_alone if backend is None else _cascade)(rows, backend)
     active = tuple(
-        (np.abs(lower - A @ result.x) < 1e-9 * (1 + np.abs(A @ result.x)))
-        | (np.abs(upper - A @ result.x) < 1e-9 * (1 + np.abs(A @ result.x)))
-        | (slack != 0.0)
+        _at_bound(A @ result.x, lower, upper) | (slack != 0.0)
         for (A, lower, upper), slack in zip(rows, result.slacks, strict=True)
     )
     return HierarchyResult(
-        result.x, result.slacks, active, result.ranks, Status.SOLVED, tuple(rows)
+        result.x, result.slacks, active, result.ranks, status, tuple(rows)
     )
+
+
+def _alone(rows: list[LevelRows], _: str | None) -> tuple[CascadeResult, Status]:
+    """By the compiled solver."""
+    sizes = [lower.size for _, lower, _ in rows]
+    solver = Lexicographic(sizes, rows[0][0].shape[1])
+    A, lower, upper = (np.concatenate(arrays) for arrays in zip(*rows, strict=True))
+    done = solver.solve(A, lower, upper)
+    slacks = tuple(np.split(solver.slack.copy(), np.cumsum(sizes)[:-1]))
+    status = Status.SOLVED if done else Status.INCOMPLETE
+    return CascadeResult(solver.x.copy(), slacks, solver.ranks), status
+
+
+def _cascade(rows: list[LevelRows], name: str | None) -> tuple[CascadeResult, Status]:
+    """By a cascade over a QP backend."""
+    n = rows[0][0].shape[1]
+    backend = QpBackend(name or DEFAULT_BACKEND)
+    return Cascade(backend).solve(rows, n), Status.SOLVED
+
+
+def _at_bound(value: Array, lower: Array, upper: Array) -> BoolArray:
+    near = AT_BOUND * (1.0 + np.abs(value))
+    return (np.abs(lower - value) < near) | (np.abs(upper - value) < near)
 
 
 def _checked(

@@ -14,6 +14,7 @@ from wbc.errors import SolverError, UnknownName
 __all__ = ["DEFAULT_BACKEND", "QpBackend", "backends"]
 
 DEFAULT_BACKEND = "proxqp"
+"""Of the cascade, where a backend is not named."""
 
 OPTIONS: dict[str, dict[str, Any]] = {
     "proxqp": {"eps_abs": 1e-10, "eps_rel": 0.0, "backend": "dense"},

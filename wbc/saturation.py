@@ -8,11 +8,10 @@ from typing import TypeAlias
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.cascade import Cascade
 from wbc.damped import DampedInverse
 from wbc.errors import SolverError
+from wbc.lexicographic import Lexicographic
 from wbc.linalg import RANK_TOLERANCE, Factor, factorise, norm
-from wbc.qp import QpBackend
 from wbc.resolver import Answer, Solver, Status
 from wbc.stack import Stack
 
@@ -44,7 +43,8 @@ class Saturation(Solver):
         self._stack, self._damping = stack, damping
         self._kinetic, self._alone = kinetic, alone
         self._active: dict[int, int] = {}
-        self._cascade = Cascade(QpBackend())
+        sizes = [where.stop - where.start for where in stack.levels]
+        self._exact = Lexicographic(sizes, stack.robot.nv)
         m = stack.lower.size
         self._level = np.zeros(m, dtype=int)
         for k, where in enumerate(stack.levels):
@@ -80,8 +80,8 @@ class Saturation(Solver):
             SolverError: there is no such set.
         """
         stack, status = self._stack, Status.SOLVED
-        levels = [(A[k], stack.lower[k], stack.upper[k]) for k in stack.levels]
-        value = A @ self._cascade.solve(levels, A.shape[1]).x
+        self._exact.solve(A, stack.lower, stack.upper)
+        value = A @ self._exact.x
         near = AT_BOUND * (np.linalg.norm(A, axis=1) + np.abs(value))
         side = 1 * (value >= stack.upper - near) - 1 * (value <= stack.lower + near)
         self._active = {

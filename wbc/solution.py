@@ -11,6 +11,7 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.certificate import Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
+from wbc.explain import Explanation, explain
 from wbc.resolver import Answer, Status
 from wbc.stack import Stack, Term
 from wbc.task import MotionTask
@@ -134,6 +135,16 @@ class Solution:
         """How all tasks fared, from the top level down."""
         stack = self._fresh()
         return tuple(self._report(stack, term) for term in stack.terms)
+
+    def explain(self) -> Explanation:
+        """Which tasks are met, what blocks the others, and at what price; print it.
+
+        Made for reading, not for every tick: it takes about as long as many of them.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        return explain(self._fresh(), self.acceleration, self.certificate())
 
     def error_norms(self) -> Iterator[tuple[str, float]]:
         """Name and norm of the error of every equality task, cheap enough for a log."""

@@ -7,8 +7,7 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import positive
-from wbc.cascade import Cascade
-from wbc.qp import DEFAULT_BACKEND, QpBackend
+from wbc.lexicographic import Lexicographic
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
 
@@ -25,48 +24,49 @@ class WeightedQP(Resolver):
 
     Args:
         ratio: weight of a level relative to the next one.
-        backend: a QP backend of `wbc.qp.backends()`.
 
     Raises:
         InputError: the ratio is not a number greater than 0.
-        UnknownName: the backend is not installed.
     """
 
     name = "weighted"
 
-    def __init__(self, ratio: float = 100.0, backend: str = DEFAULT_BACKEND) -> None:
+    def __init__(self, ratio: float = 100.0) -> None:
         self.ratio = positive(ratio, "ratio")
-        self._backend = QpBackend(backend)
 
     def start(self, stack: Stack) -> Solver:
         """A solver with a warm start of its own."""
-        return _Weighted(self, self._backend, stack)
+        return _Weighted(self, stack)
 
 
 class _Weighted(Solver):
     """Two levels: the hard limits, and everything else in one weighted sum."""
 
-    def __init__(self, resolver: WeightedQP, backend: QpBackend, stack: Stack) -> None:
-        self._stack, self._cascade = stack, Cascade(backend)
+    def __init__(self, resolver: WeightedQP, stack: Stack) -> None:
+        self._stack, self._hard = stack, -1
         self._factor = np.ones(stack.lower.size)
         for k, where in enumerate(stack.levels):
             self._factor[where] = np.sqrt(resolver.ratio) ** -k
 
     def solve(self) -> Answer:
-        """Resolve the present rows."""
+        """Resolve the present rows; ranks are the levels' sizes, none is projected."""
         stack, factor = self._stack, self._factor
-        hard = 0
+        n, m = stack.robot.nv, stack.lower.size
+        hard = self._leading_inequalities()
+        if hard != self._hard:
+            self._hard, self._solver = hard, Lexicographic([hard, m - hard], n)
+        done = self._solver.solve(
+            stack.Ay * factor[:, None], stack.lower * factor, stack.upper * factor
+        )
+        ranks = tuple(min(where.stop - where.start, n) for where in stack.levels)
+        status = Status.SOLVED if done else Status.INCOMPLETE
+        return Answer(stack.L_inv.T @ self._solver.x, ranks, status)
+
+    def _leading_inequalities(self) -> int:
+        """How many rows the levels above the first equality have."""
+        stack, hard = self._stack, 0
         for where in stack.levels:
             if (stack.lower[where] == stack.upper[where]).any():
                 break
             hard = where.stop
-        levels = [
-            (stack.Ay[rows] * f[:, None], stack.lower[rows] * f, stack.upper[rows] * f)
-            for rows in (slice(0, hard), slice(hard, None))
-            for f in (factor[rows],)
-        ]
-        result = self._cascade.solve(levels, stack.robot.nv)
-        ranks = tuple(
-            int(np.linalg.matrix_rank(stack.Ay[where])) for where in stack.levels
-        )
-        return Answer(stack.L_inv.T @ result.x, ranks, Status.SOLVED)
+        return hard

@@ -1,0 +1,63 @@
+"""Compilation of the numerical kernels: plain Python loops, compiled by numba.
+
+Compiled code is kept in the user's cache folder, so only the first use of a version
+waits. numba looks for changes in a kernel's own file only, not in those of the kernels
+that it calls; therefore each state of the sources has a cache folder of its own.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final, TypeVar, cast
+
+import numba
+
+__all__ = ["announce", "compiled"]
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
+"""Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
+
+
+def _cache_folder() -> Path:
+    """Where compiled code of exactly these kernels belongs."""
+    digest = hashlib.sha256()
+    for source in sorted(Path(__file__).parent.rglob("*.py")):
+        text = source.read_bytes()
+        if b"wbc.compiled" in text or source == Path(__file__):
+            digest.update(text)
+    root = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(root) / "wbc" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+CACHE: Final = _cache_folder()
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function at its first call, for the argument types of that call.
+
+    Kernels read the arrays that they loop over into local names first: each access
+    through a tuple of arrays counts references, in a loop again and again.
+    """
+    elsewhere = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = elsewhere or str(CACHE)
+    try:
+        compile_it = numba.njit(cache=True, fastmath=ALLOWED, error_model="numpy")
+        return cast(Function, compile_it(function))
+    finally:
+        numba.config.CACHE_DIR = elsewhere
+
+
+def announce(kernel: Any, what: str) -> None:
+    """Say on standard error that a compilation is about to start, if one is."""
+    if kernel.signatures:
+        return
+    cache = Path(kernel.stats.cache_path)
+    if not any(cache.glob(f"*{kernel.__name__}-*.nbc")):
+        sys.stderr.write(f"wbc: compiling {what}, once; about ten seconds ...\n")
+        sys.stderr.flush()
