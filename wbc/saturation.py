@@ -164,14 +164,28 @@ class Saturation(Solver):
         blocks = [(A[rows], rows, b) for _, rows, b in self._blocks()]
         n = y.size
         for J, rows, b in [*blocks, (np.eye(n), np.zeros(0, int), np.zeros(n))]:
-            pull = J.T @ (b - J @ y)
-            row = self._wrong_sign(above, held, pull, undecided)
+            slack = b - J @ y
+            row = self._would_leave(rows, slack, undecided) if rows.size else None
+            if row is None:
+                row = self._wrong_sign(above, held, J.T @ slack, undecided)
             if row is not None:
                 del self._active[row]
                 return True
             above.append(J)
             held.extend(int(r) for r in rows)
         return False
+
+    def _would_leave(
+        self, rows: IntArray, slack: Array, undecided: set[int]
+    ) -> int | None:
+        """A held row that others hold inside its bound; those beyond it stay."""
+        floor = MULTIPLIER * (1.0 + float(np.abs(slack).max(initial=0.0)))
+        for row, s in zip(rows, slack, strict=True):
+            if row in undecided and abs(s) > floor:
+                if s * self._active[row] > 0.0:
+                    return int(row)
+                undecided.discard(int(row))
+        return None
 
     def _wrong_sign(
         self, above: list[Array], held: list[int], pull: Array, undecided: set[int]
