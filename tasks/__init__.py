@@ -12,7 +12,7 @@ from tasks.curve import Curve
 from tasks.frame import FrameOrientation, FramePose, FramePosition
 from tasks.geometry import Line, Plane, PointOnLine, PointOnPlane, PointOnPoint
 from tasks.limits import JointLimits, TorqueLimits
-from tasks.path import Path, PathPoint, PathState
+from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
 
 __all__ = [
@@ -27,7 +27,6 @@ __all__ = [
     "Line",
     "Path",
     "PathPoint",
-    "PathState",
     "Plane",
     "PointOnCurve",
     "PointOnLine",

@@ -7,16 +7,19 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.base import CatalogueTask
+from tasks.evaluator import Code
 from tasks.path import Path
-from wbc import PD, Damper, MotionTask, Rows, State
-from wbc.arrays import frozen, positive
+from wbc import PD, Damper, Robot
+from wbc.arrays import Array, frozen, positive
 from wbc.errors import InputError
+from wbc.kernel import NO_TABLE
 
 __all__ = ["PointOnCurve", "TravelSpeed"]
 
 
 @final
-class PointOnCurve(MotionTask):
+class PointOnCurve(CatalogueTask):
     """Origin of a frame on a curve, two rows across it [m]; along it is free.
 
     With s the position of the nearest point, e_i = n_i(s) . (p - c(s)); s moves with
@@ -33,6 +36,8 @@ class PointOnCurve(MotionTask):
         InputError: unusable gains.
     """
 
+    code = Code.ON_CURVE
+
     def __init__(
         self,
         frame: str,
@@ -47,27 +52,19 @@ class PointOnCurve(MotionTask):
         super().__init__(name or f"{frame} on curve", "m", rows, law, (frame,))
         self.curve = curve
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F = state.frame(self.frames[0])
-        along = self.curve.follow(state, self.frames[0])
-        c = along.point.c
-        offset = F.p - c[0]
-        slip = F.V[:3] - c[1] * along.rate
-        for i, n in enumerate((along.point.n1, along.point.n2)):
-            by_s = float(n[1] @ offset - n[0] @ c[1])
-            out.error[i] = n[0] @ offset
-            out.J[i] = n[0] @ F.J[:3] + by_s * along.J
-            turned = n[2] @ offset * along.rate + 2.0 * (n[1] @ slip)
-            out.drift[i] = (
-                n[0] @ (F.drift[:3] - c[2] * along.rate**2)
-                + turned * along.rate
-                + by_s * along.drift
-            )
+    def parameters(self, robot: Robot) -> Array:
+        """None."""
+        del robot
+        return NO_TABLE
+
+    def table(self, robot: Robot) -> Array:
+        """The curve."""
+        del robot
+        return self.curve.table
 
 
 @final
-class TravelSpeed(MotionTask):
+class TravelSpeed(CatalogueTask):
     """Speed along a path, one row [m/s]: ds/dt = v_ref(t, s).
 
     v_ref rises smoothly in time from `start` on and falls smoothly in space towards
@@ -88,6 +85,8 @@ class TravelSpeed(MotionTask):
         InputError: a number that is not positive, a start that is not finite, or an
             end beyond the path.
     """
+
+    code = Code.SPEED
 
     def __init__(
         self,
@@ -113,30 +112,15 @@ class TravelSpeed(MotionTask):
                 f"{path.length:.6g} m."
             )
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the row; its error is the speed error."""
-        along = self.path.follow(state, self.frames[0])
-        rise, rise_rate = smooth_rise((state.t - self.start) / self.ramp)
-        fall, fall_slope = self._fall(self.end - along.s)
-        reference = self.speed * rise * fall
-        change = self.speed * (
-            rise_rate / self.ramp * fall - rise * fall_slope * along.rate
-        )
-        out.error[0] = along.rate - reference
-        out.J[0] = along.J
-        out.rate[0] = -reference
-        out.drift[0] = along.drift - change
+    def parameters(self, robot: Robot) -> Array:
+        """Speed, ramp, start, end (4,)."""
+        del robot
+        return np.array([self.speed, self.ramp, self.start, self.end])
 
-    def _fall(self, left: float) -> tuple[float, float]:
-        """Share of the speed with `left` metres to go, and its slope [1/m]."""
-        if not np.isfinite(left):
-            return 1.0, 0.0
-        k = 0.5 * np.pi / (self.speed * self.ramp)
-        if left >= self.speed * self.ramp:
-            return 1.0, 0.0
-        if left <= 0.0:
-            return max(k * left, -1.0), k if k * left > -1.0 else 0.0
-        return float(np.sin(k * left)), float(k * np.cos(k * left))
+    def table(self, robot: Robot) -> Array:
+        """The path."""
+        del robot
+        return self.path.table
 
 
 def smooth_rise(u: float) -> tuple[float, float]:

@@ -7,12 +7,14 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.base import CatalogueTask
+from tasks.evaluator import Code
 from tasks.geometry import perpendicular
+from tasks.kernels.paths import direction as path_direction
 from tasks.path import Path, PathPoint
-from wbc import PD, FrameState, MotionTask, Rows, State
+from wbc import PD, Robot
 from wbc.arrays import Array, frozen, unit
 from wbc.errors import InputError
-from wbc.linalg import cross
 
 __all__ = ["AxisAlignment", "AxisAlongPath"]
 
@@ -21,7 +23,7 @@ ROWS = ("tilt 1", "tilt 2")
 
 
 @final
-class AxisAlignment(MotionTask):
+class AxisAlignment(CatalogueTask):
     """An axis a of frame F along a direction n: two rows [rad].
 
     e = -(rotation vector from a to n), on two body-fixed directions across a, so
@@ -40,6 +42,8 @@ class AxisAlignment(MotionTask):
         InputError: a zero direction or axis, or unusable gains.
     """
 
+    code = Code.ALONG
+
     def __init__(
         self,
         frame: str,
@@ -52,7 +56,8 @@ class AxisAlignment(MotionTask):
     ) -> None:
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} axis", "rad", ROWS, law, (frame,))
-        self._triad = triad(axis, self.name)
+        self._parameters = np.zeros(18)
+        self._parameters[:9] = triad(axis, self.name)
         self.set_target(direction)
 
     def set_target(
@@ -69,21 +74,16 @@ class AxisAlignment(MotionTask):
         n = unit(direction, f"direction of '{self.name}'")
         omega = frozen(velocity, (3,), f"target velocity of '{self.name}'")
         alpha = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._n, self._omega, self._alpha = n, omega, alpha
+        self._parameters[9:] = np.concatenate([n, omega, alpha])
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F = state.frame(self.frames[0])
-        B = (F.R @ self._triad[1:].T).T
-        out.error[:] = -B @ rotation_between(F.R @ self._triad[0], self._n, B[0])
-        out.J[:] = B @ F.J[3:]
-        out.rate[:] = -B @ self._omega
-        swept = cross(F.V[3:], self._omega)
-        out.drift[:] = B @ (F.drift[3:] - self._alpha + swept)
+    def parameters(self, robot: Robot) -> Array:
+        """Axis and two directions across it, target, its motion (18,), live."""
+        del robot
+        return self._parameters
 
 
 @final
-class AxisAlongPath(MotionTask):
+class AxisAlongPath(CatalogueTask):
     """An axis of F at fixed angles to the path that F's origin travels, two rows [rad].
 
     The direction is d(s) = -cos(travel) m(s) + sin(travel) t(s), with t the tangent
@@ -106,6 +106,8 @@ class AxisAlongPath(MotionTask):
         InputError: an angle that is not finite, a zero axis, or unusable gains.
     """
 
+    code = Code.ALONG_PATH
+
     def __init__(
         self,
         frame: str,
@@ -127,40 +129,22 @@ class AxisAlongPath(MotionTask):
 
     def direction_at(self, point: PathPoint) -> Array:
         """The direction and two derivatives by s at a point of the path, (3, 3)."""
-        m = np.cos(self.work) * point.n1[:3] + np.sin(self.work) * point.n2[:3]
-        return -np.cos(self.travel) * m + np.sin(self.travel) * point.c[1:]  # type: ignore[no-any-return]
+        d = np.zeros(9)
+        path_direction(point.rows, self.work, self.travel, d)
+        return d.reshape(3, 3)
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F: FrameState = state.frame(self.frames[0])
-        along = self.path.follow(state, self.frames[0])
-        d, slope, bend = self.direction_at(along.point)
-        B = (F.R @ self._triad[1:].T).T
-        turn = cross(d, slope)
-        omega = turn * along.rate
-        out.error[:] = -B @ rotation_between(F.R @ self._triad[0], d, B[0])
-        out.J[:] = B @ (F.J[3:] - np.outer(turn, along.J))
-        alpha = cross(d, bend) * along.rate**2 + turn * along.drift
-        out.drift[:] = B @ (F.drift[3:] - alpha + cross(F.V[3:], omega))
+    def parameters(self, robot: Robot) -> Array:
+        """Axis and two directions across it, work and travel angle (11,)."""
+        del robot
+        return np.append(self._triad, [self.work, self.travel])
+
+    def table(self, robot: Robot) -> Array:
+        """The path."""
+        del robot
+        return self.path.table
 
 
 def triad(axis: ArrayLike, task: str) -> Array:
-    """An axis and two directions across it, (3, 3), one a row."""
+    """An axis and two directions across it, (9,), one after the other."""
     a = unit(axis, f"axis of '{task}'")
-    return np.vstack([a, perpendicular(a)])
-
-
-def rotation_between(a: Array, n: Array, spare: Array) -> Array:
-    """Rotation vector (3,) [rad] of the shortest turn from a to n, unit vectors.
-
-    Args:
-        a: (3,) from.
-        n: (3,) to.
-        spare: (3,) unit vector across a, the axis where n = -a.
-    """
-    axis = cross(a, n)
-    sine, cosine = float(np.linalg.norm(axis)), float(a @ n)
-    angle = np.arctan2(sine, cosine)
-    if sine > 1e-12:
-        return axis * (angle / sine)  # type: ignore[no-any-return]
-    return spare * angle if cosine < 0.0 else axis
+    return np.concatenate([a, perpendicular(a).ravel()])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
-from tasks.path import Path, PathPoint
+from tasks.path import Path
 from wbc.arrays import Array, frozen
 from wbc.errors import InputError
 
@@ -20,8 +20,6 @@ DENSE = 4000
 """Samples at which arc length is measured."""
 KNOTS = 240
 """Samples that the curve is finally interpolated through."""
-NEWTON_STEPS = 6
-CONVERGED = 1e-13
 
 
 @final
@@ -50,42 +48,17 @@ class Curve(Path):
         spline = make_interp_spline(u, through, k=DEGREE)
         s, at = _arc_length(spline, u[-1])
         self.length = float(s[-1])
-        self._knots = np.linspace(0.0, self.length, KNOTS)
-        u_of_s = np.interp(self._knots, s, at)
-        u_of_s = _refine(spline, s, at, self._knots, u_of_s)
+        knots = np.linspace(0.0, self.length, KNOTS)
+        u_of_s = _refine(spline, s, at, knots, np.interp(knots, s, at))
         c = spline(u_of_s)
         tangent = spline(u_of_s, 1)
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
         n1 = _normals(c, tangent, _along(normals, u, u_of_s, len(through)))
         rows = np.hstack([c, n1, np.cross(tangent, n1)])
-        self._breaks, self._coefficients = _pieces(
-            make_interp_spline(self._knots, rows, k=DEGREE)
-        )
-        self._samples = c
-
-    def locate(self, p: Array) -> float:
-        """Position s [m] of the nearest point; beyond an end, along its tangent."""
-        offset = self._samples - p
-        s = float(self._knots[int(np.argmin(np.einsum("ij,ij->i", offset, offset)))])
-        for _ in range(NEWTON_STEPS):
-            c, tangent, bend = self.at(s).c[:3]
-            slope = tangent @ tangent - (p - c) @ bend
-            step = float(tangent @ (p - c)) / max(float(slope), 0.1)
-            s += step
-            if abs(step) < CONVERGED:
-                break
-        return s
-
-    def at(self, s: float) -> PathPoint:
-        """Point and frame at s."""
-        inside = min(max(s, 0.0), self.length)
-        i = int(np.searchsorted(self._breaks, inside, side="right")) - 1
-        rows = _powers(inside - self._breaks[i]) @ self._coefficients[i]
-        if inside != s:
-            rows[0, :3] += (s - inside) * rows[1, :3]
-            rows[2:, :3] = 0.0
-            rows[1:, 3:] = 0.0
-        return PathPoint(rows)
+        breaks, pieces = _pieces(make_interp_spline(knots, rows, k=DEGREE))
+        header = [1.0, self.length, breaks.size, KNOTS]
+        table = np.concatenate([header, breaks, pieces.ravel(), c.ravel()])
+        self.table = frozen(table, table.shape, "the curve")
 
 
 def _points(points: ArrayLike) -> Array:
@@ -104,19 +77,6 @@ def _pieces(spline: BSpline) -> tuple[Array, Array]:
     orders = range(DEGREE, -1, -1)
     taylor = [spline(breaks, order) / factorial(order) for order in orders]
     return breaks, np.stack(taylor, axis=1)
-
-
-def _powers(x: float) -> Array:
-    """(4, 6): a quintic's value and three derivatives, highest power first."""
-    x2, x3, x4 = x * x, x * x * x, x * x * x * x
-    return np.array(
-        [
-            [x4 * x, x4, x3, x2, x, 1.0],
-            [5 * x4, 4 * x3, 3 * x2, 2 * x, 1.0, 0.0],
-            [20 * x3, 12 * x2, 6 * x, 2.0, 0.0, 0.0],
-            [60 * x2, 24 * x, 6.0, 0.0, 0.0, 0.0],
-        ]
-    )
 
 
 def _speed(spline: BSpline, u: Array) -> Array:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import final
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from wbc import PD, MotionTask, Rows, State
+from tasks.base import CatalogueTask
+from tasks.evaluator import Code
+from wbc import PD, Robot
 from wbc.arrays import Array, frozen, rotation
 
 __all__ = ["FrameOrientation", "FramePose", "FramePosition"]
@@ -18,7 +19,7 @@ STILL = np.zeros(3)
 
 
 @final
-class FramePosition(MotionTask):
+class FramePosition(CatalogueTask):
     """Origin of a frame at a point: e = p_WF - p_d [m].
 
     Args:
@@ -32,6 +33,8 @@ class FramePosition(MotionTask):
         InputError: target or gains of the wrong shape, or not finite.
     """
 
+    code = Code.ON_POINT
+
     def __init__(
         self,
         frame: str,
@@ -43,6 +46,7 @@ class FramePosition(MotionTask):
     ) -> None:
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} position", "m", AXES, law, (frame,))
+        self._parameters = np.zeros(9)
         self.set_target(target)
 
     def set_target(
@@ -59,19 +63,16 @@ class FramePosition(MotionTask):
         p = frozen(target, (3,), f"target of '{self.name}'")
         pd = frozen(velocity, (3,), f"target velocity of '{self.name}'")
         pdd = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._p, self._pd, self._pdd = p, pd, pdd
+        self._parameters[:] = np.concatenate([p, pd, pdd])
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F = state.frame(self.frames[0])
-        out.error[:] = F.p - self._p
-        out.J[:] = F.J[:3]
-        out.rate[:] = -self._pd
-        out.drift[:] = F.drift[:3] - self._pdd
+    def parameters(self, robot: Robot) -> Array:
+        """Target, its velocity and acceleration (9,), live."""
+        del robot
+        return self._parameters
 
 
 @final
-class FrameOrientation(MotionTask):
+class FrameOrientation(CatalogueTask):
     """Orientation of a frame: e = log(R_WF R_d^T) [rad], world axes.
 
     Its rate is the angular velocity relative to the target's, so the task has no
@@ -88,6 +89,8 @@ class FrameOrientation(MotionTask):
         InputError: the target is no rotation, or a gain is unusable.
     """
 
+    code = Code.ORIENTATION
+
     def __init__(
         self,
         frame: str,
@@ -99,6 +102,7 @@ class FrameOrientation(MotionTask):
     ) -> None:
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} orientation", "rad", AXES, law, (frame,))
+        self._parameters = np.zeros(15)
         self.set_target(target)
 
     def set_target(
@@ -115,19 +119,16 @@ class FrameOrientation(MotionTask):
         R = rotation(target, f"target of '{self.name}'")
         omega = frozen(velocity, (3,), f"target velocity of '{self.name}'")
         alpha = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._R, self._omega, self._alpha = R, omega, alpha
+        self._parameters[:] = np.concatenate([R.ravel(), omega, alpha])
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F = state.frame(self.frames[0])
-        out.error[:] = orientation_error(F.R, self._R)
-        out.J[:] = F.J[3:]
-        out.rate[:] = -self._omega
-        out.drift[:] = F.drift[3:] - self._alpha
+    def parameters(self, robot: Robot) -> Array:
+        """Target (9,), its angular velocity and acceleration, live."""
+        del robot
+        return self._parameters
 
 
 @final
-class FramePose(MotionTask):
+class FramePose(CatalogueTask):
     """Position and orientation of a frame together, six rows [linear; angular].
 
     Args:
@@ -142,6 +143,8 @@ class FramePose(MotionTask):
         InputError: unusable target or gains.
     """
 
+    code = Code.POSE
+
     def __init__(
         self,
         frame: str,
@@ -155,6 +158,7 @@ class FramePose(MotionTask):
         rows = tuple(f"{kind} {axis}" for kind in ("p", "R") for axis in AXES)
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} pose", "m, rad", rows, law, (frame,))
+        self._parameters = np.zeros(24)
         self.set_target(position, orientation)
 
     def set_target(
@@ -173,18 +177,10 @@ class FramePose(MotionTask):
         R = rotation(orientation, f"target of '{self.name}'")
         V = frozen(twist, (6,), f"target twist of '{self.name}'")
         A = frozen(acceleration, (6,), f"target acceleration of '{self.name}'")
-        self._p, self._R, self._V, self._A = p, R, V, A
+        linear = [p, V[:3], A[:3]]
+        self._parameters[:] = np.concatenate([*linear, R.ravel(), V[3:], A[3:]])
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        F = state.frame(self.frames[0])
-        out.error[:3] = F.p - self._p
-        out.error[3:] = orientation_error(F.R, self._R)
-        out.J[:] = F.J
-        out.rate[:] = -self._V
-        out.drift[:] = F.drift - self._A
-
-
-def orientation_error(R: Array, R_d: Array) -> Array:
-    """Rotation vector (3,) [rad] that turns R_d into R, world axes."""
-    return np.array(pin.log3(R @ R_d.T))
+    def parameters(self, robot: Robot) -> Array:
+        """Those of `FramePosition`, then those of `FrameOrientation`, live."""
+        del robot
+        return self._parameters

@@ -7,8 +7,10 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.path import Path, PathPoint
-from wbc import PD, MotionTask, Rows, State
+from tasks.base import CatalogueTask
+from tasks.evaluator import Code
+from tasks.path import Path
+from wbc import PD, Robot
 from wbc.arrays import Array, frozen, positive, unit
 
 __all__ = ["Line", "Plane", "PointOnLine", "PointOnPlane", "PointOnPoint"]
@@ -34,10 +36,9 @@ class Line(Path):
         self.direction = unit(direction, "the line's direction")
         self.length = np.inf if length is None else positive(length, "length")
         self.normals = perpendicular(self.direction)
-        point_rows = np.zeros((4, 9))
-        point_rows[0, 3:6], point_rows[0, 6:] = self.normals
-        point_rows[1, :3] = self.direction
-        self._rows = point_rows
+        header = [0.0, self.length, 0.0, 0.0]
+        parts = [header, self.point, self.direction, self.normals.ravel()]
+        self.table = frozen(np.concatenate(parts), (16,), "the line", finite=False)
 
     @classmethod
     def between(cls, start: ArrayLike, end: ArrayLike) -> Line:
@@ -48,16 +49,6 @@ class Line(Path):
         """
         a, b = frozen(start, (3,), "start"), frozen(end, (3,), "end")
         return cls(a, b - a, float(np.linalg.norm(b - a)) or None)
-
-    def locate(self, p: Array) -> float:
-        """Position s [m] of the foot of the perpendicular from p (3,)."""
-        return float(self.direction @ (p - self.point))
-
-    def at(self, s: float) -> PathPoint:
-        """Point and frame at s, which may lie beyond the ends."""
-        rows = self._rows.copy()
-        rows[0, :3] = self.point + s * self.direction
-        return PathPoint(rows)
 
 
 @final
@@ -90,7 +81,7 @@ def perpendicular(direction: Array) -> Array:
 
 
 @final
-class PointOnPoint(MotionTask):
+class PointOnPoint(CatalogueTask):
     """Origin of a frame on a fixed point, three rows [m]; orientation stays free.
 
     Args:
@@ -103,6 +94,8 @@ class PointOnPoint(MotionTask):
     Raises:
         InputError: unusable point or gains.
     """
+
+    code = Code.ON_POINT
 
     def __init__(
         self,
@@ -119,16 +112,14 @@ class PointOnPoint(MotionTask):
         )
         self.point = frozen(point, (3,), f"point of '{self.name}'")
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """E = p - p_0."""
-        F = state.frame(self.frames[0])
-        out.error[:] = F.p - self.point
-        out.J[:] = F.J[:3]
-        out.drift[:] = F.drift[:3]
+    def parameters(self, robot: Robot) -> Array:
+        """The point, at rest (9,)."""
+        del robot
+        return np.concatenate([self.point, np.zeros(6)])
 
 
 @final
-class PointOnLine(MotionTask):
+class PointOnLine(CatalogueTask):
     """Origin of a frame on a line, two rows across it [m]; along it is free.
 
     Args:
@@ -141,6 +132,8 @@ class PointOnLine(MotionTask):
     Raises:
         InputError: unusable gains.
     """
+
+    code = Code.ON_LINE
 
     def __init__(
         self,
@@ -156,17 +149,14 @@ class PointOnLine(MotionTask):
         super().__init__(name or f"{frame} on line", "m", rows, law, (frame,))
         self.line = line
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """e_i = n_i . (p - p_0) for two normals of the line."""
-        F = state.frame(self.frames[0])
-        normals = self.line.normals
-        out.error[:] = normals @ (F.p - self.line.point)
-        out.J[:] = normals @ F.J[:3]
-        out.drift[:] = normals @ F.drift[:3]
+    def parameters(self, robot: Robot) -> Array:
+        """Point and two normals (9,)."""
+        del robot
+        return np.concatenate([self.line.point, self.line.normals.ravel()])
 
 
 @final
-class PointOnPlane(MotionTask):
+class PointOnPlane(CatalogueTask):
     """Origin of a frame on a plane, one row [m]; P4 eq. (10) with its sign mended.
 
     Args:
@@ -179,6 +169,8 @@ class PointOnPlane(MotionTask):
     Raises:
         InputError: unusable gains.
     """
+
+    code = Code.ON_PLANE
 
     def __init__(
         self,
@@ -193,9 +185,7 @@ class PointOnPlane(MotionTask):
         super().__init__(name or f"{frame} on plane", "m", ("normal",), law, (frame,))
         self.plane = plane
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """E = n . (p - p_0)."""
-        F = state.frame(self.frames[0])
-        out.error[0] = self.plane.distance(F.p)
-        out.J[0] = self.plane.normal @ F.J[:3]
-        out.drift[0] = self.plane.normal @ F.drift[:3]
+    def parameters(self, robot: Robot) -> Array:
+        """Point and normal (6,)."""
+        del robot
+        return np.concatenate([self.plane.point, self.plane.normal])

@@ -6,18 +6,16 @@ from typing import Literal, TypeAlias, final, get_args
 
 import numpy as np
 
-from wbc import Robot, Rows, State, Task, UnknownName
-from wbc.arrays import Array, positive
+from tasks.base import run_kernel
+from tasks.evaluator import Code, write_rows
+from wbc import Kernel, Robot, Rows, State, Task, UnknownName
+from wbc.arrays import positive
 from wbc.errors import InputError
+from wbc.kernel import NO_TABLE
 
-__all__ = ["JointLimits", "TorqueLimits", "exact_bounds", "semi_implicit_bounds"]
+__all__ = ["JointLimits", "TorqueLimits"]
 
 Integrator: TypeAlias = Literal["semi-implicit", "exact"]
-
-RECOVERY = 0.1
-"""Time constant [s] of the way back into the limits."""
-RECOVERY_SPEED = 0.25
-"""Share of the velocity limit that the way back may use."""
 
 
 @final
@@ -42,11 +40,15 @@ class TorqueLimits(Task):
         """The joints' names."""
         return robot.joint_names
 
+    def kernel(self, robot: Robot) -> Kernel:
+        """The compiled half."""
+        limit = self.fraction * robot.tau_max
+        return Kernel(write_rows, int(Code.TORQUE_BOUNDS), limit)
+
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        limit = self.fraction * state.robot.tau_max
-        np.fill_diagonal(rows.A, 1.0)
-        rows.lower[:], rows.upper[:] = -limit, limit
+        p = self.kernel(state.robot).parameters
+        run_kernel(Code.TORQUE_BOUNDS, p, NO_TABLE, None, state, rows)
 
 
 @final
@@ -87,9 +89,7 @@ class JointLimits(Task):
             raise InputError("braking is a share of the acceleration limit, at most 1.")
         if integrator not in get_args(Integrator):
             raise UnknownName("integrator", integrator, get_args(Integrator))
-        self._bounds = {"semi-implicit": semi_implicit_bounds, "exact": exact_bounds}[
-            integrator
-        ]
+        self.integrator = integrator
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -106,70 +106,15 @@ class JointLimits(Task):
         if (robot.q_max - robot.q_min <= 2.0 * self.margin).any():
             raise InputError(f"margin {self.margin} of '{self.name}' leaves no range.")
 
+    def kernel(self, robot: Robot) -> Kernel:
+        """The compiled half."""
+        parameters = np.array([self.braking, float(self.integrator == "exact")])
+        low, high = robot.q_min + self.margin, robot.q_max - self.margin
+        table = np.concatenate([low, high, robot.v_max, robot.a_max])
+        return Kernel(write_rows, int(Code.JOINT_BOUNDS), parameters, table)
+
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        robot = state.robot
-        np.fill_diagonal(rows.A, 1.0)
-        A, V, dt = robot.a_max, robot.v_max, state.dt
-        stop = self.braking * A
-        upper = self._bounds(
-            robot.q_max - self.margin - state.q, state.v, V, A, stop, dt
-        )
-        lower = -self._bounds(
-            state.q - robot.q_min - self.margin, -state.v, V, A, stop, dt
-        )
-        middle = 0.5 * (lower + upper)
-        crossed = lower > upper
-        rows.lower[:] = np.where(crossed, middle, lower)
-        rows.upper[:] = np.where(crossed, middle, upper)
-
-
-def semi_implicit_bounds(
-    gap: Array, v: Array, V: Array, A: Array, stop: Array, dt: float
-) -> Array:
-    """Largest acceleration (n,) towards a limit, for v+ = v + dt a, q+ = q + dt v+.
-
-    v+ <= min(V, -stop dt + sqrt((stop dt)^2 + 2 stop gap)): after the step, braking
-    with `stop` ends at the limit.
-
-    Args:
-        gap: distance to the limit (n,), negative beyond it.
-        v: velocity towards it (n,).
-        V: velocity limit (n,).
-        A: acceleration limit (n,).
-        stop: deceleration that braking counts on (n,).
-        dt: control period [s].
-    """
-    room = np.maximum(gap, 0.0)
-    after = -stop * dt + np.sqrt((stop * dt) ** 2 + 2.0 * stop * room)
-    after = np.where(gap < 0.0, _way_back(gap, V), np.minimum(V, after))
-    return np.clip((after - v) / dt, -A, A)
-
-
-def exact_bounds(
-    gap: Array, v: Array, V: Array, A: Array, stop: Array, dt: float
-) -> Array:
-    """Largest acceleration (n,) towards a limit, constant over dt.
-
-    Arguments as for `semi_implicit_bounds`. The smallest of the bounds by position
-    within the step, by velocity, and by viability after it.
-    """
-    room = np.maximum(gap, 0.0)
-    a1 = -v / dt
-    a3 = 2.0 * (room - dt * v) / dt**2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        peak = np.where(room > 0.0, -(v**2) / (2.0 * room), -np.inf)
-    position = np.where((v <= 0.0) | (a3 > a1), a3, np.minimum(a1, peak))
-    b = 2.0 * dt * v + stop * dt**2
-    c = v**2 - 2.0 * stop * (room - dt * v)
-    root = b * b - 4.0 * dt**2 * c
-    smooth = (-b + np.sqrt(np.maximum(root, 0.0))) / (2.0 * dt**2)
-    viable = np.where(root < 0.0, a1, np.maximum(a1, smooth))
-    inside = np.minimum(np.minimum(position, (V - v) / dt), viable)
-    back = (_way_back(gap, V) - v) / dt
-    return np.clip(np.where(gap < 0.0, back, inside), -A, A)
-
-
-def _way_back(gap: Array, V: Array) -> Array:
-    """Velocity (n,) wanted beyond a limit: back in, at a share of the limit's speed."""
-    return np.maximum(gap / RECOVERY, -RECOVERY_SPEED * V)
+        kernel = self.kernel(state.robot)
+        p, table = kernel.parameters, kernel.table
+        run_kernel(Code.JOINT_BOUNDS, p, table, None, state, rows)

@@ -8,15 +8,18 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc import PD, Damper, MotionTask, Robot, Rows, State
+from tasks.base import CatalogueTask
+from tasks.evaluator import Code
+from wbc import PD, Damper, Robot
 from wbc.arrays import Array, frozen
 from wbc.errors import InputError
+from wbc.kernel import NO_TABLE
 
 __all__ = ["Damping", "Posture"]
 
 
 @final
-class Posture(MotionTask):
+class Posture(CatalogueTask):
     """Joints at a target: e = q - q_d [rad or m], one row a joint.
 
     Args:
@@ -31,6 +34,8 @@ class Posture(MotionTask):
             of the wrong size for the robot.
     """
 
+    code = Code.AT_TARGET
+
     def __init__(
         self,
         target: ArrayLike | None = None,
@@ -43,6 +48,7 @@ class Posture(MotionTask):
         super().__init__(name, "rad", (), PD(stiffness, damping))
         self.joints = None if joints is None else tuple(joints)
         self._target: Array | None = None
+        self._homes: dict[int, Array] = {}
         if target is not None:
             self.set_target(target)
 
@@ -55,7 +61,12 @@ class Posture(MotionTask):
         shape = np.shape(target) if self._target is None else self._target.shape
         if len(shape) != 1:
             raise InputError(f"target of '{self.name}' must be of shape (n,).")
-        self._target = frozen(target, shape, f"target of '{self.name}'")
+        checked = frozen(target, shape, f"target of '{self.name}'")
+        if self._target is None:
+            self._target = checked.copy()
+        self._target[:] = checked
+        for home in self._homes.values():
+            home[:] = checked
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -73,17 +84,20 @@ class Posture(MotionTask):
                 f"'{robot.name}' needs {len(names)}: was it made for another robot?"
             )
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows."""
-        where = _indices(state.robot, self.joints)
-        home = state.robot.q_home[where]
-        target = home if self._target is None else self._target
-        out.error[:] = state.q[where] - target
-        _select(out, where)
+    def parameters(self, robot: Robot) -> Array:
+        """The target, live; the robot's home while none was given."""
+        if self._target is not None and id(robot) not in self._homes:
+            return self._target
+        home = robot.q_home[_indices(robot, self.joints)]
+        return self._homes.setdefault(id(robot), home)
+
+    def table(self, robot: Robot) -> Array:
+        """Indices of the joints."""
+        return np.array(_indices(robot, self.joints), dtype=np.float64)
 
 
 @final
-class Damping(MotionTask):
+class Damping(CatalogueTask):
     """Joint velocities that should vanish, one row a joint [rad/s or m/s].
 
     Args:
@@ -94,6 +108,8 @@ class Damping(MotionTask):
     Raises:
         InputError: the rate is negative or not finite.
     """
+
+    code = Code.AT_REST
 
     def __init__(
         self,
@@ -115,19 +131,16 @@ class Damping(MotionTask):
             robot.joint_index(joint)
         super().check(robot)
 
-    def evaluate(self, state: State, out: Rows) -> None:
-        """Write the rows; the error is the velocity itself."""
-        where = _indices(state.robot, self.joints)
-        out.error[:] = state.v[where]
-        _select(out, where)
+    def parameters(self, robot: Robot) -> Array:
+        """None."""
+        del robot
+        return NO_TABLE
+
+    def table(self, robot: Robot) -> Array:
+        """Indices of the joints."""
+        return np.array(_indices(robot, self.joints), dtype=np.float64)
 
 
 def _indices(robot: Robot, joints: tuple[str, ...] | None) -> list[int]:
     names = robot.joint_names
     return [names.index(joint) for joint in (names if joints is None else joints)]
-
-
-def _select(out: Rows, where: list[int]) -> None:
-    out.J[:] = 0.0
-    out.J[np.arange(len(where)), where] = 1.0
-    out.drift[:] = 0.0

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from tests.catalogue import Subject
 from tests.tolerances import AFFINE, DIFFERENCE, STEP
-from wbc import MotionTask, Robot, Rows, State
+from wbc import MotionTask, Robot, Rows, State, allocate_rows
 
 T0 = 0.4
 
@@ -17,7 +17,7 @@ def rows_at(subject: Subject, robot: Robot, q, v, t: float = 0.0) -> Rows:
     task = subject.task
     assert isinstance(task, MotionTask)
     subject.move(t)
-    rows = Rows(len(task.row_names(robot)), robot.nv)
+    rows = allocate_rows(len(task.row_names(robot)), robot.nv)
     task.update(robot.state(q, v, T0 + t), rows)
     return rows
 

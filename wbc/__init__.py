@@ -17,16 +17,18 @@ from wbc.errors import (
     WbcError,
 )
 from wbc.explain import ActiveBound, Blocker, Explanation, TaskExplanation
+from wbc.frames import FrameState
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
+from wbc.kernel import Kernel
 from wbc.law import PD, Damper, Law
 from wbc.nullspace import NullSpace
 from wbc.qp import backends
 from wbc.resolver import Resolver, Status
 from wbc.robot import Robot
-from wbc.rows import Rows
+from wbc.rows import Rows, allocate_rows
 from wbc.solution import Solution, TaskReport
-from wbc.state import FrameState, State
+from wbc.state import State
 from wbc.task import MotionTask, Task
 from wbc.weighted import WeightedQP
 
@@ -44,6 +46,7 @@ __all__ = [
     "Hierarchy",
     "HierarchyResult",
     "InputError",
+    "Kernel",
     "Law",
     "Level",
     "ModelError",
@@ -63,6 +66,7 @@ __all__ = [
     "UnknownName",
     "WbcError",
     "WeightedQP",
+    "allocate_rows",
     "backends",
     "resolve",
     "solve_hierarchy",

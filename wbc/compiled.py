@@ -27,10 +27,12 @@ ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 def _cache_folder() -> Path:
     """Where compiled code of exactly these kernels belongs."""
     digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
-        text = source.read_bytes()
-        if b"wbc.compiled" in text or source == Path(__file__):
-            digest.update(text)
+    here = Path(__file__).parent
+    for folder in (here, here.with_name("tasks")):
+        for source in sorted(folder.rglob("*.py")):
+            text = source.read_bytes()
+            if b"wbc.compiled" in text or b"NamedTuple" in text:
+                digest.update(text)
     root = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(root) / "wbc" / f"kernels-{digest.hexdigest()[:16]}"
 

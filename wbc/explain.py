@@ -294,7 +294,7 @@ def _levels(tick: _Tick) -> Iterator[_Level]:
         pull = A.T @ slack if tick.missed[where].any() else np.zeros(n)
         far = float(tick.near[where].max(initial=0.0))
         tiny = norm(A) * (0.1 * NEGLIGIBLE * float(np.linalg.norm(slack)) + 0.01 * far)
-        may = (tick.side != 0) & (index < where.start) & (held == 0)
+        may = (tick.side != 0) & (index < where.start)
         pushing, clear = _pushing(tick, Z, pull, np.flatnonzero(may), tiny)
         held, unique = held.copy(), unique and clear
         held[pushing] = k
@@ -304,8 +304,8 @@ def _levels(tick: _Tick) -> Iterator[_Level]:
         slope = tick.slope(where, R) * float(tick.missed[where].any())
         yield _Level(R, _without_noise(tick, slope, norm(A), slack), held, unique)
     size = 1.0 + float(np.linalg.norm(tick.y))
-    may = (tick.side != 0) & (held == 0)
-    pushing, clear = _pushing(tick, Z, -tick.y, np.flatnonzero(may), NEGLIGIBLE * size)
+    sided = np.flatnonzero(tick.side)
+    pushing, clear = _pushing(tick, Z, -tick.y, sided, NEGLIGIBLE * size)
     R, Z = _stage(tick.unit[pushing], pushing, tick.norm[pushing], R, Z)
     slope = _without_noise(tick, tick.y @ R, 1.0, tick.y)
     yield _Level(R, slope, held, unique and clear)
@@ -344,7 +344,7 @@ def _without_noise(tick: _Tick, slope: Array, size: float, slack: Array) -> Arra
 
 def _task(tick: _Tick, term: Term, level: _Level, proof: float) -> TaskExplanation:
     where, raw = term.where, term.rows
-    value = raw.A @ (tick.torque if term.torque else tick.vdot)
+    value = raw.A @ (tick.torque if term.task.space == "torque" else tick.vdot)
     wanted = np.clip(value, raw.lower, raw.upper)
     missed = tick.missed[where]
     met = not missed.any()
@@ -462,7 +462,7 @@ def _row_units(term: Term) -> tuple[str, ...]:
     A unit of several parts, "m, rad", is shared out in equal blocks.
     """
     parts = [part.strip() for part in term.task.unit.split(",")]
-    if not term.torque:
+    if term.task.space != "torque":
         parts = [_per_second_squared(part) for part in parts]
     m = len(term.names)
     if m % len(parts):

@@ -2,42 +2,53 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, final
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
 from wbc.arrays import Array
 
-__all__ = ["Rows", "Space"]
+__all__ = ["Rows", "Space", "allocate_rows", "rows_over"]
 
 Space: TypeAlias = Literal["acceleration", "torque"]
 """What the rows bind: joint accelerations vdot, or joint torques tau."""
 
 
-@final
-class Rows:
+class Rows(NamedTuple):
     """The rows of one task, written in place every tick.
 
     Attributes:
-        A: (m, n) coefficients of vdot, or of tau where `space` is "torque".
-        lower: (m,) lower bounds, -inf where there is none.
-        upper: (m,) upper bounds; an equality where lower = upper.
         error: (m,) what the task wants at zero, in the task's unit.
         rate: (m,) its rate of change.
         drift: (m,) its second derivative at zero joint acceleration.
+        lower: (m,) lower bounds, -inf where there is none.
+        upper: (m,) upper bounds; an equality where lower = upper.
+        A: (m, n) coefficients of vdot, or of tau where the task's space is "torque".
     """
 
-    __slots__ = ("A", "drift", "error", "lower", "rate", "upper")
-
-    def __init__(self, m: int, n: int) -> None:
-        self.A = np.zeros((m, n))
-        self.lower = np.zeros(m)
-        self.upper = np.zeros(m)
-        self.error = np.zeros(m)
-        self.rate = np.zeros(m)
-        self.drift = np.zeros(m)
+    error: Array
+    rate: Array
+    drift: Array
+    lower: Array
+    upper: Array
+    A: Array
 
     @property
     def J(self) -> Array:
         """Another name of A, for tasks whose rows are a Jacobian."""
         return self.A
+
+
+def rows_over(A: Array, bands: Array) -> Rows:
+    """Rows that lie in larger arrays, as views.
+
+    Args:
+        A: (m, n).
+        bands: (5, m) error, rate, drift, lower, upper.
+    """
+    return Rows(*bands, A)
+
+
+def allocate_rows(m: int, n: int) -> Rows:
+    """M rows of zeros for n joints."""
+    return rows_over(np.zeros((m, n)), np.zeros((5, m)))

@@ -139,7 +139,7 @@ class Solution:
     def explain(self) -> Explanation:
         """Which tasks are met, what blocks the others, and at what price; print it.
 
-        Made for reading, not for every tick: it takes about as long as many of them.
+        Made for reading, not for every tick: it takes milliseconds.
 
         Raises:
             StaleError: the controller has moved on, or this tick fell back.

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import final
 
 import numpy as np
-from scipy.linalg.lapack import dpotrf, dtrtri
 
 from wbc.arrays import Array
+from wbc.assembly import assemble
 from wbc.errors import ModelError
 from wbc.hierarchy import Hierarchy
+from wbc.kernel import Kernel
 from wbc.robot import Robot
 from wbc.rows import Rows
+from wbc.rowswriter import Place, RowsWriter
 from wbc.state import State
 from wbc.task import Task
 
@@ -27,11 +29,15 @@ class Term:
         weight: what its residual is multiplied by.
         level: index of its level, 0 at the top.
         where: slice of its rows in the stacked arrays.
-        rows: what the task writes.
+        rows: what the task writes: views of the stack's `raw` and `bands`.
         names: one name a row.
+        kernel: its compiled half, None for a task in plain Python.
     """
 
-    __slots__ = ("level", "names", "rows", "task", "torque", "weight", "where")
+    __slots__ = ("kernel", "level", "names", "rows", "task", "weight", "where")
+
+    rows: Rows
+    kernel: Kernel | None
 
     def __init__(
         self, task: Task, weight: float, level: int, start: int, robot: Robot
@@ -40,8 +46,7 @@ class Term:
         self.task, self.weight, self.level = task, weight, level
         self.names = task.row_names(robot)
         self.where = slice(start, start + len(self.names))
-        self.rows = Rows(len(self.names), robot.nv)
-        self.torque = task.space == "torque"
+        self.kernel = task.kernel(robot) if self.names else None
 
 
 @final
@@ -59,13 +64,15 @@ class Stack:
         UnknownName, InputError: a task does not fit the robot.
 
     Attributes:
-        A: (m, n) weighted rows in vdot, from the top level down.
+        raw: (m, n) rows as the tasks write them, from the top level down.
+        bands: (5, m) their error, rate, drift, lower, upper.
+        A: (m, n) weighted rows in vdot.
         Ay: (m, n) the same rows in y.
-        lower: (m,) weighted lower bounds.
-        upper: (m,) weighted upper bounds.
+        lower, upper: (m,) weighted bounds.
         weights: (m,) the weights.
         levels: one slice of the rows a level.
         terms: the tasks and their places.
+        M, h: inertia (n, n) and bias torques (n,) of the last state.
         L_inv: (n, n) inverse of the Cholesky factor of M.
         tick: how often the rows were rewritten.
     """
@@ -74,22 +81,35 @@ class Stack:
         self.robot, self.hierarchy = robot, hierarchy
         self.terms: list[Term] = []
         self.levels: list[slice] = []
-        start = 0
+        m = 0
         for k, level in enumerate(hierarchy.levels):
-            first = start
+            first = m
             for task, weight in level.terms:
-                term = Term(task, weight, k, start, robot)
+                term = Term(task, weight, k, m, robot)
                 self.terms.append(term)
-                start = term.where.stop
-            self.levels.append(slice(first, start))
-        n = robot.nv
-        self.A, self.Ay = np.zeros((start, n)), np.zeros((start, n))
-        self.lower, self.upper = np.zeros(start), np.zeros(start)
-        self.weights = np.concatenate(
-            [np.full(len(t.names), t.weight) for t in self.terms]
-        )
-        self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
+                m = term.where.stop
+            self.levels.append(slice(first, m))
+        self._allocate(m, robot.nv)
+        self._python = [term for term in self.terms if term.kernel is None]
+        self._writer: RowsWriter | None = None
+        self._state: State | None = None
         self.tick = 0
+
+    def _allocate(self, m: int, n: int) -> None:
+        self.raw, self.bands = np.zeros((m, n)), np.zeros((5, m))
+        self.A, self.Ay, self._bounds = (
+            np.zeros((m, n)),
+            np.zeros((m, n)),
+            np.zeros((2, m)),
+        )
+        self.lower, self.upper = self._bounds
+        self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
+        self.weights, self._torque = np.ones(m), np.zeros(m)
+        for term in self.terms:
+            where = term.where
+            term.rows = Rows(*self.bands[:, where], self.raw[where])
+            self.weights[where] = term.weight
+            self._torque[where] = term.task.space == "torque"
 
     def update(self, state: State) -> None:
         """Rewrite all rows at this state.
@@ -97,31 +117,43 @@ class Stack:
         Raises:
             ModelError: the inertia matrix is not positive definite.
         """
+        if state is not self._state:
+            self._bind(state)
         self.tick += 1
-        self.M, self.h = state.M, state.h
-        for term in self.terms:
-            self._write(term, state)
-        L, failed = dpotrf(self.M, lower=1)
-        if failed:
+        if self._writer is not None:
+            self._writer.write(self.raw, self.bands)
+        for term in self._python:
+            term.task.update(state, term.rows)
+        regular = assemble(
+            self.raw,
+            self.bands,
+            self.weights,
+            self._torque,
+            self.M.T,
+            self.h,
+            self.A,
+            self.Ay,
+            self._bounds,
+            self.L_inv,
+        )
+        if not regular:
             raise ModelError("the inertia matrix is not positive definite.")
-        self.L_inv, _ = dtrtri(L, lower=1)
-        np.matmul(self.A, self.L_inv.T, out=self.Ay)
 
-    def _write(self, term: Term, state: State) -> None:
-        rows, where = term.rows, term.where
-        term.task.update(state, rows)
-        A, lower, upper = self.A[where], self.lower[where], self.upper[where]
-        if term.torque:
-            np.matmul(rows.A, state.M, out=A)
-            bias = rows.A @ state.h
-            np.subtract(rows.lower, bias, out=lower)
-            np.subtract(rows.upper, bias, out=upper)
-        else:
-            A[:], lower[:], upper[:] = rows.A, rows.lower, rows.upper
-        if term.weight != 1.0:
-            A *= term.weight
-            lower *= term.weight
-            upper *= term.weight
+    def _bind(self, state: State) -> None:
+        """Read from another State's memory from now on."""
+        self._state, self.M, self.h = state, state.M, state.h
+        places = [
+            Place(
+                term.kernel,
+                next(iter(term.task.frames), None),
+                term.where.start,
+                term.where.stop,
+            )
+            for term in self.terms
+            if term.kernel is not None
+        ]
+        if places:
+            self._writer = RowsWriter(places, state, self.lower.size)
 
     def torque(self, vdot: Array) -> Array:
         """Tau = M vdot + h, (n,) [Nm]."""

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from wbc.errors import InputError
+from wbc.kernel import Kernel
 from wbc.law import Law
 from wbc.rows import Rows, Space
 
@@ -51,6 +52,11 @@ class Task(ABC):
         """
         for frame in self.frames:
             robot.frame_id(frame)
+
+    def kernel(self, robot: Robot) -> Kernel | None:
+        """The task's compiled half for this robot; None for plain Python."""
+        del robot
+        return None
 
     def __add__(self, other: Task | Level) -> Level:
         from wbc.hierarchy import Level
@@ -104,7 +110,10 @@ class MotionTask(Task):
 
     @abstractmethod
     def evaluate(self, state: State, out: Rows) -> None:
-        """Write out.error (m,), out.J (m, n), out.drift (m,), and add to out.rate."""
+        """Write out.error (m,), out.J (m, n), out.drift (m,), and add to out.rate.
+
+        The arrays are fixed: write into them, `out.rate[:] -= speed`.
+        """
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The names given at construction."""
@@ -126,6 +135,6 @@ class MotionTask(Task):
         """Ask for the acceleration that the law wants."""
         rows.rate[:] = 0.0
         self.evaluate(state, rows)
-        rows.rate += rows.A @ state.v
+        rows.rate[:] += rows.A @ state.v
         rows.upper[:] = self.law.acceleration(rows.error, rows.rate) - rows.drift
         rows.lower[:] = rows.upper

@@ -17,7 +17,15 @@ from tasks import JointLimits
 from tests.arms import TIPS, seven_axis, six_axis
 from tests.catalogue import RawRows, random_inequalities, random_state
 from tests.tolerances import DIFFERENCE, PROOF_OF_EQUALITIES, SAME, STEP
-from wbc import Explanation, Hierarchy, Level, NullSpace, Rows, State, resolve
+from wbc import (
+    Explanation,
+    Hierarchy,
+    Level,
+    NullSpace,
+    State,
+    allocate_rows,
+    resolve,
+)
 from wbc.explain import Reason, Side
 
 SEEDS = range(100)
@@ -94,7 +102,7 @@ def robot_problem(seed: int) -> Problem:
     n, eye = robot.nv, np.eye(robot.nv)
     room = np.abs(state.h) + rng.uniform(0.02, 0.2, n) * robot.tau_max
     torque = TorqueRows("torque", eye, -room, room)
-    limits = Rows(n, n)
+    limits = allocate_rows(n, n)
     JointLimits().update(state, limits)
     joints = RawRows("joints", eye, limits.lower, limits.upper)
     F = state.frame(TIPS[robot.name])

@@ -125,6 +125,13 @@ def test_bounds_away_from_the_point_block_nothing():
     assert only(explained(caps >> want(3.0))).task == "near"
 
 
+def test_a_bound_below_a_task_is_never_to_blame():
+    stack = at_most(1.0) >> want(3.0) >> at_most(1.0, name="late")
+    explanation = explained(stack)
+    assert only(explanation).task == "cap"
+    assert explanation.task("goal").unique
+
+
 def test_bounds_that_exclude_each_other_block_as_what_cannot_be_met():
     # x <= 1 and x >= 2 settle at 1.5, and share every move
     explanation = explained(at_most(1.0) + at_least(2.0) >> want(3.0))

@@ -11,7 +11,15 @@ import tasks
 from tests.arms import seven_axis, six_axis
 from tests.catalogue import CATALOGUE, MOTION, random_state
 from tests.tolerances import CURVE, ROUND_OFF
-from wbc import Controller, InputError, MotionTask, Rows, UnknownName, resolve
+from wbc import (
+    Controller,
+    InputError,
+    MotionTask,
+    Rows,
+    UnknownName,
+    allocate_rows,
+    resolve,
+)
 from wbc.rows import Space
 
 ARM = seven_axis()
@@ -21,7 +29,7 @@ X, Y, Z = np.eye(3)
 
 
 def rows_of(task, state) -> Rows:
-    rows = Rows(len(task.row_names(state.robot)), state.robot.nv)
+    rows = allocate_rows(len(task.row_names(state.robot)), state.robot.nv)
     task.check(state.robot)
     task.update(state, rows)
     return rows

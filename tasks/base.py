@@ -1,0 +1,79 @@
+"""What the catalogue's tasks share: rows by a compiled kernel, alone or in a stack."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+
+from tasks.evaluator import SCRATCH, Code, evaluate, write_rows
+from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
+from wbc.arrays import Array
+from wbc.frames import frame_at, frame_size
+from wbc.kernel import NO_TABLE
+
+__all__ = ["CatalogueTask", "run_kernel"]
+
+
+class CatalogueTask(MotionTask):
+    """A motion task whose error, Jacobian and drift come from a compiled kernel.
+
+    Within a stack all such tasks are evaluated by one call; `evaluate` runs the same
+    kernel for this task alone.
+    """
+
+    code: Code
+
+    @abstractmethod
+    def parameters(self, robot: Robot) -> Array:
+        """Numbers that the kernel reads; a live array where they can change."""
+
+    def table(self, robot: Robot) -> Array:
+        """More of them, constant."""
+        del robot
+        return NO_TABLE
+
+    def kernel(self, robot: Robot) -> Kernel | None:
+        """The compiled half; None where the law is not one that is compiled."""
+        if not isinstance(self.law, PD | Damper):
+            return None
+        m = len(self.row_names(robot))
+        stiffness = self.law.stiffness if isinstance(self.law, PD) else np.zeros(())
+        return Kernel(
+            write_rows,
+            int(self.code),
+            self.parameters(robot),
+            self.table(robot),
+            np.broadcast_to(stiffness, (m,)),
+            np.broadcast_to(self.law.damping, (m,)),
+        )
+
+    def evaluate(self, state: State, out: Rows) -> None:
+        """Write the rows."""
+        robot = state.robot
+        F = state.frame(self.frames[0]) if self.frames else None
+        run_kernel(self.code, self.parameters(robot), self.table(robot), F, state, out)
+
+
+def run_kernel(
+    code: Code,
+    parameters: Array,
+    table: Array,
+    F: FrameState | None,
+    state: State,
+    out: Rows,
+) -> None:
+    """Write one task's rows at a state."""
+    n = state.robot.nv
+    evaluate(
+        int(code),
+        parameters,
+        table,
+        frame_at(np.zeros(frame_size(n)), n) if F is None else F,
+        state.q,
+        state.v,
+        state.t,
+        state.dt,
+        np.zeros(SCRATCH + n),
+        out,
+    )

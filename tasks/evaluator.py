@@ -1,0 +1,143 @@
+"""All of the catalogue's rows in one compiled call."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from tasks.kernels.joints import at_rest, at_target, joint_bounds, torque_bounds
+from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
+from tasks.kernels.points import on_line, on_plane, on_point
+from tasks.kernels.rotations import along, orientation, pose
+from wbc.arrays import Array, IntArray
+from wbc.compiled import compiled
+from wbc.frames import FrameState, frame_at, update_frame
+from wbc.pointers import floats_at
+from wbc.rows import Rows
+
+__all__ = ["SCRATCH", "Code", "evaluate", "write_rows"]
+
+
+class Code(IntEnum):
+    """Which kernel computes a task's rows."""
+
+    ON_POINT = 0
+    ON_LINE = 1
+    ON_PLANE = 2
+    ORIENTATION = 3
+    POSE = 4
+    ALONG = 5
+    ON_CURVE = 6
+    SPEED = 7
+    ALONG_PATH = 8
+    AT_TARGET = 9
+    AT_REST = 10
+    JOINT_BOUNDS = 11
+    TORQUE_BOUNDS = 12
+
+
+@compiled
+def evaluate(
+    code: int,
+    p: Array,
+    table: Array,
+    F: FrameState,
+    q: Array,
+    v: Array,
+    t: float,
+    dt: float,
+    scratch: Array,
+    out: Rows,
+) -> None:
+    """Write one task's rows.
+
+    Args:
+        code: of the kernel.
+        p: the task's parameters.
+        table: more of them.
+        F: its frame; any frame for tasks without one.
+        q, v: (n,) positions and velocities.
+        t: time [s].
+        dt: control period [s].
+        scratch: (96 + n,) numbers on the way.
+        out: the rows; `rate` must be 0 on entry.
+    """
+    if code == 0:
+        on_point(p, F, out)
+    elif code == 1:
+        on_line(p, F, out)
+    elif code == 2:
+        on_plane(p, F, out)
+    elif code == 3:
+        orientation(p, F, scratch, out, 0)
+    elif code == 4:
+        pose(p, F, scratch, out)
+    elif code == 5:
+        along(p, F, scratch, out)
+    elif code == 6:
+        on_curve(table, F, scratch, out)
+    elif code == 7:
+        speed(p, table, F, t, scratch, out)
+    elif code == 8:
+        along_path(p, table, F, scratch, out)
+    elif code == 9:
+        at_target(p, table, q, out)
+    elif code == 10:
+        at_rest(table, v, out)
+    elif code == 11:
+        joint_bounds(p, table, q, v, dt, out)
+    elif code == 12:
+        torque_bounds(p, out)
+
+
+@compiled
+def write_rows(
+    program: IntArray,
+    gains: Array,
+    pointers: IntArray,
+    constants: Array,
+    blocks: Array,
+    jacobian: int,
+    scratch: Array,
+    q: Array,
+    v: Array,
+    t: float,
+    dt: float,
+    A: Array,
+    bands: Array,
+) -> None:
+    """Update the frames, then the rows of all tasks; an evaluator of `wbc.kernel`.
+
+    Args:
+        program: (k, 8) for each task: code, frame, first row, end, address and size of
+            parameters, address and size of the table.
+        gains: (2, m) stiffness and damping of every row; negative for bounds.
+        pointers, constants, blocks, jacobian: of `wbc.frames.Frames`.
+        scratch: (2, 96 + n) numbers on the way.
+        q, v, t, dt: the state.
+        A: (m, n) is written.
+        bands: (5, m) error, rate, drift, lower, upper are written.
+    """
+    n = q.size
+    for f in range(pointers.shape[0]):
+        update_frame(blocks[f], pointers[f], constants[f], jacobian, scratch[1], n)
+    for k in range(program.shape[0]):
+        code, frame, begin, end = program[k, :4]
+        out = Rows(
+            bands[0, begin:end],
+            bands[1, begin:end],
+            bands[2, begin:end],
+            bands[3, begin:end],
+            bands[4, begin:end],
+            A[begin:end],
+        )
+        p = floats_at(program[k, 4], program[k, 5])
+        table = floats_at(program[k, 6], program[k, 7])
+        out.rate[:] = 0.0
+        F = frame_at(blocks[frame], n)
+        evaluate(code, p, table, F, q, v, t, dt, scratch[0], out)
+        for i in range(begin, end):
+            if gains[0, i] >= 0.0:
+                for j in range(n):
+                    bands[1, i] += A[i, j] * v[j]
+                wish = gains[0, i] * bands[0, i] + gains[1, i] * bands[1, i]
+                bands[3, i] = bands[4, i] = -wish - bands[2, i]

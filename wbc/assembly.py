@@ -1,0 +1,92 @@
+"""From the tasks' rows to the rows of a stack: torque rows, weights, kinetic metric."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wbc.arrays import Array
+from wbc.compiled import compiled
+
+__all__ = ["assemble"]
+
+
+@compiled
+def assemble(
+    raw: Array,
+    bands: Array,
+    weights: Array,
+    torque: Array,
+    M: Array,
+    h: Array,
+    A: Array,
+    Ay: Array,
+    bounds: Array,
+    L_inv: Array,
+) -> bool:
+    """Weighted rows in vdot, and in y = L^T vdot with M = L L^T.
+
+    Torque rows become acceleration rows through tau = M vdot + h.
+
+    Args:
+        raw: (m, n) rows as the tasks wrote them.
+        bands: (5, m) error, rate, drift, lower, upper, likewise.
+        weights: (m,) what each row is multiplied by.
+        torque: (m,) 1 for rows that bind tau, else 0.
+        M: (n, n) inertia.
+        h: (n,) Coriolis and gravity torques.
+        A, Ay: (m, n) are written.
+        bounds: (2, m) lower and upper bounds are written.
+        L_inv: (n, n) inverse of the Cholesky factor is written.
+
+    Returns:
+        whether the inertia is positive definite.
+    """
+    m, n = A.shape
+    if not _invert_cholesky(M, L_inv):
+        return False
+    for i in range(m):
+        bias, weight = 0.0, weights[i]
+        if torque[i] == 0.0:
+            for j in range(n):
+                A[i, j] = weight * raw[i, j]
+        else:
+            A[i] = 0.0
+            for k in range(n):
+                if raw[i, k] != 0.0:
+                    bias += raw[i, k] * h[k]
+                    for j in range(n):
+                        A[i, j] += weight * raw[i, k] * M[j, k]
+        bounds[0, i] = weight * (bands[3, i] - bias)
+        bounds[1, i] = weight * (bands[4, i] - bias)
+        for j in range(n):
+            total = 0.0
+            for k in range(j + 1):
+                total += A[i, k] * L_inv[j, k]
+            Ay[i, j] = total
+    return True
+
+
+@compiled
+def _invert_cholesky(M: Array, L_inv: Array) -> bool:
+    """Inverse of L with M = L L^T, lower triangular; False if there is no such L."""
+    n = M.shape[0]
+    L = L_inv  # the factor first, then its inverse, in the same memory
+    for j in range(n):
+        for i in range(j, n):
+            total = M[i, j]
+            for k in range(j):
+                total -= L[i, k] * L[j, k]
+            if i > j:
+                L[i, j] = total / L[j, j]
+            elif total > 0.0:
+                L[j, j] = np.sqrt(total)
+            else:
+                return False
+    for j in range(n):
+        L[j, j] = 1.0 / L[j, j]
+        for i in range(j + 1, n):
+            total = 0.0
+            for k in range(j, i):
+                total -= L[i, k] * L_inv[k, j]
+            L_inv[i, j] = total / L[i, i]
+    return True

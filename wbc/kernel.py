@@ -1,0 +1,38 @@
+"""A task's compiled half: which kernel computes its rows, and from which numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import numpy as np
+
+from wbc.arrays import Array
+
+__all__ = ["NO_TABLE", "Kernel"]
+
+NO_TABLE = np.zeros(1)
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class Kernel:
+    """How to compute a task's rows without Python.
+
+    Attributes:
+        evaluator: compiled function that runs the kernels of a whole catalogue; its
+            arguments are those of `tasks.evaluator.evaluate`.
+        code: which kernel of that catalogue.
+        parameters: numbers that the kernel reads at every tick; the task may change
+            them in place, as a moving target does.
+        table: more of them, such as the pieces of a curve.
+        stiffness, damping: (m,) of a PD law; None for rows that are bounds.
+    """
+
+    evaluator: Callable[..., Any]
+    code: int
+    parameters: Array
+    table: Array = field(default_factory=lambda: NO_TABLE)
+    stiffness: Array | None = None
+    damping: Array | None = None

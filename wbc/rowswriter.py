@@ -1,0 +1,98 @@
+"""The rows of all compiled tasks of a stack, in one call a tick."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, final
+
+import numpy as np
+
+from wbc.arrays import Array
+from wbc.errors import InputError
+from wbc.frames import Frames
+from wbc.kernel import Kernel
+from wbc.pointers import address_of
+from wbc.state import State
+
+__all__ = ["Place", "RowsWriter"]
+
+SCRATCH = 96
+
+
+class Place(NamedTuple):
+    """A compiled task in a stack.
+
+    Attributes:
+        kernel: how its rows are computed.
+        frame: name of the frame that it reads, None for none.
+        begin, end: its rows.
+    """
+
+    kernel: Kernel
+    frame: str | None
+    begin: int
+    end: int
+
+
+@final
+class RowsWriter:
+    """Writes the rows of compiled tasks; bound to one State, whose memory it reads.
+
+    Args:
+        places: the tasks, all of one catalogue.
+        state: where the robot's quantities lie.
+        m: number of rows of the stack.
+    """
+
+    def __init__(self, places: Sequence[Place], state: State, m: int) -> None:
+        robot = state.robot
+        self._state, self._kernels = state, [place.kernel for place in places]
+        self._evaluate = self._kernels[0].evaluator
+        if any(kernel.evaluator is not self._evaluate for kernel in self._kernels):
+            raise InputError("compiled tasks of one stack must share one catalogue.")
+        names = list(dict.fromkeys(p.frame for p in places if p.frame)) or ["universe"]
+        indices = [robot.frame_id(name) for name in names]
+        self._frames = Frames(robot.model, state.data, names, indices)
+        self._program = np.array([_entry(place, names) for place in places], np.int_)
+        self._gains = np.full((2, m), -1.0)
+        for kernel, _, begin, end in places:
+            if kernel.damping is not None and kernel.stiffness is not None:
+                self._gains[0, begin:end] = kernel.stiffness
+                self._gains[1, begin:end] = kernel.damping
+        self._scratch = np.zeros((2, SCRATCH + robot.nv))
+
+    def write(self, A: Array, bands: Array) -> None:
+        """Write A (m, n) and bands (5, m): error, rate, drift, lower, upper."""
+        frames, state = self._frames, self._state
+        self._evaluate(
+            self._program,
+            self._gains,
+            frames.pointers,
+            frames.constants,
+            frames.blocks,
+            frames.jacobian,
+            self._scratch,
+            state.q,
+            state.v,
+            state.t,
+            state.dt,
+            A,
+            bands,
+        )
+
+
+def _entry(place: Place, names: Sequence[str]) -> list[int]:
+    """One row of the program."""
+    kernel = place.kernel
+    frame = names.index(place.frame) if place.frame else 0
+    p, table = kernel.parameters, kernel.table
+    return [
+        kernel.code,
+        frame,
+        place.begin,
+        place.end,
+        address_of(p),
+        p.size,
+        address_of(table),
+        table.size,
+    ]
