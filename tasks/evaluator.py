@@ -55,7 +55,8 @@ def evaluate(
         p: the task's parameters.
         table: more of them.
         F: its frame; any frame for tasks without one.
-        q, v: (n,) positions and velocities.
+        q: (n,) positions.
+        v: (n,) velocities.
         t: time [s].
         dt: control period [s].
         scratch: (96 + n,) numbers on the way.
@@ -111,9 +112,15 @@ def write_rows(
         program: (k, 8) for each task: code, frame, first row, end, address and size of
             parameters, address and size of the table.
         gains: (2, m) stiffness and damping of every row; negative for bounds.
-        pointers, constants, blocks, jacobian: of `wbc.frames.Frames`.
+        pointers: of `wbc.frames.Frames`.
+        constants: of the same.
+        blocks: of the same; written.
+        jacobian: of the same.
         scratch: (2, 96 + n) numbers on the way.
-        q, v, t, dt: the state.
+        q: (n,) positions.
+        v: (n,) velocities.
+        t: time [s].
+        dt: control period [s].
         A: (m, n) is written.
         bands: (5, m) error, rate, drift, lower, upper are written.
     """

@@ -36,7 +36,7 @@ class Line(Path):
         self.direction = unit(direction, "the line's direction")
         self.length = np.inf if length is None else positive(length, "length")
         self.normals = perpendicular(self.direction)
-        header = [0.0, self.length, 0.0, 0.0]
+        header = np.array([0.0, self.length, 0.0, 0.0])
         parts = [header, self.point, self.direction, self.normals.ravel()]
         self.table = frozen(np.concatenate(parts), (16,), "the line", finite=False)
 

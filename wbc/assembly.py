@@ -7,7 +7,7 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.compiled import compiled
 
-__all__ = ["assemble"]
+__all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics"]
 
 
 @compiled
@@ -34,7 +34,8 @@ def assemble(
         torque: (m,) 1 for rows that bind tau, else 0.
         M: (n, n) inertia.
         h: (n,) Coriolis and gravity torques.
-        A, Ay: (m, n) are written.
+        A: (m, n) is written.
+        Ay: (m, n) is written.
         bounds: (2, m) lower and upper bounds are written.
         L_inv: (n, n) inverse of the Cholesky factor is written.
 
@@ -90,3 +91,33 @@ def _invert_cholesky(M: Array, L_inv: Array) -> bool:
                 total -= L[i, k] * L_inv[k, j]
             L_inv[i, j] = total / L[i, i]
     return True
+
+
+@compiled
+def back_substitute(L_inv: Array, y: Array, vdot: Array) -> None:
+    """Vdot = L^-T y, into vdot (n,)."""
+    n = y.size
+    for i in range(n):
+        vdot[i] = 0.0
+        for j in range(i, n):
+            vdot[i] += L_inv[j, i] * y[j]
+
+
+@compiled
+def inverse_dynamics(M: Array, h: Array, vdot: Array, tau: Array) -> bool:
+    """Tau = M vdot + h, into tau (n,); whether it is finite."""
+    n = vdot.size
+    for i in range(n):
+        tau[i] = h[i]
+        for j in range(n):
+            tau[i] += M[i, j] * vdot[j]
+    return finite(tau)
+
+
+@compiled
+def finite(x: Array) -> bool:
+    """Whether no number of x (n,) is NaN or infinite."""
+    good = True
+    for value in x:
+        good = good and np.isfinite(value)
+    return bool(good)

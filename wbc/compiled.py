@@ -20,6 +20,7 @@ __all__ = ["announce", "compiled"]
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
+SETTINGS: Any = numba.config
 ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 """Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
 
@@ -46,13 +47,13 @@ def compiled(function: Function) -> Function:
     Kernels read the arrays that they loop over into local names first: each access
     through a tuple of arrays counts references, in a loop again and again.
     """
-    elsewhere = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = elsewhere or str(CACHE)
+    elsewhere = SETTINGS.CACHE_DIR
+    SETTINGS.CACHE_DIR = elsewhere or str(CACHE)
     try:
         compile_it = numba.njit(cache=True, fastmath=ALLOWED, error_model="numpy")
         return cast(Function, compile_it(function))
     finally:
-        numba.config.CACHE_DIR = elsewhere
+        SETTINGS.CACHE_DIR = elsewhere
 
 
 def announce(kernel: Any, what: str) -> None:

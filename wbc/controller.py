@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import final
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, positive
+from wbc.assembly import finite
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP
@@ -106,19 +108,16 @@ class Controller:
         try:
             stack.update(self._state)
             answer = self._solver.solve()
+            torque = stack.torque(answer.vdot)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        finite = np.isfinite(answer.vdot).all()
-        torque = stack.torque(answer.vdot) if finite else answer.vdot
-        if not np.isfinite(torque).all():
-            return self._hold(q, v, Status.SOLVER_FAILED, "a torque is not finite")
         return Solution(stack, torque, answer, answer.status)
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        if not (np.isfinite(q).all() and np.isfinite(v).all() and np.isfinite(t)):
+        if not (finite(q) and finite(v) and math.isfinite(t)):
             return False
-        return all(np.isfinite(w).all() for w in wrenches.values())
+        return all(finite(w) for w in wrenches.values())
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
         """Gravity compensation and damping; unknown joints count as at rest."""

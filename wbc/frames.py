@@ -127,8 +127,8 @@ def update_frame(
     """Write one frame's block.
 
     With r from the joint's to the frame's origin: V = v + omega x r, and the classical
-    acceleration a + omega x v + alpha x r + omega x (omega x r). Pinocchio's a_gf is the
-    spatial acceleration less gravity, in the joint's axes.
+    acceleration a + omega x v + alpha x r + omega x (omega x r). Pinocchio's a_gf is
+    the spatial acceleration less gravity, in the joint's axes.
     """
     F = frame_at(flat, n)
     R = floats_at(pointers[0], 9)
@@ -160,7 +160,7 @@ def update_frame(
 
 @compiled
 def _jacobian(F: FrameState, J: Array, constants: Array, n: int) -> None:
-    """Columns of the joints that move the frame, moved from the world's origin to it."""
+    """Columns of the joints that move the frame, from the world's origin to it."""
     p0, p1, p2 = F.p[0], F.p[1], F.p[2]
     for j in range(n):
         on, c = constants[15 + j], 6 * j

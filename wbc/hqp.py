@@ -62,7 +62,7 @@ class _Compiled(Solver):
         stack, solver = self._stack, self._solver
         done = solver.solve(stack.Ay, stack.lower, stack.upper)
         status = Status.SOLVED if done else Status.INCOMPLETE
-        vdot = stack.L_inv.T @ solver.x
+        vdot = stack.acceleration(solver.x)
         return Answer(vdot, solver.ranks, status, solver.slack.copy())
 
 
@@ -78,8 +78,8 @@ class _Cascading(Solver):
         levels = [(stack.Ay[k], stack.lower[k], stack.upper[k]) for k in stack.levels]
         result = self._cascade.solve(levels, stack.robot.nv)
         slacks = np.concatenate(result.slacks)
-        vdot = stack.L_inv.T @ result.x
-        return Answer(vdot, result.ranks, Status.SOLVED, slacks)
+        vdot = stack.acceleration(result.x)
+        return Answer(vdot, np.array(result.ranks), Status.SOLVED, slacks)
 
 
 @final
@@ -153,7 +153,8 @@ def _alone(rows: list[LevelRows], _: str | None) -> tuple[CascadeResult, Status]
     done = solver.solve(A, lower, upper)
     slacks = tuple(np.split(solver.slack.copy(), np.cumsum(sizes)[:-1]))
     status = Status.SOLVED if done else Status.INCOMPLETE
-    return CascadeResult(solver.x.copy(), slacks, solver.ranks), status
+    ranks = tuple(solver.ranks.tolist())
+    return CascadeResult(solver.x.copy(), slacks, ranks), status
 
 
 def _cascade(rows: list[LevelRows], name: str | None) -> tuple[CascadeResult, Status]:

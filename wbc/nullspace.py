@@ -35,9 +35,9 @@ class NullSpace(Resolver):
     round in circles, the set of rows to hold is taken from the strict QP.
 
     Args:
-        law: "wbcf" (Sentis and Khatib; sound, and optimal on equalities), "tsid" (Del Prete; least
-            joint acceleration in the free space), or "uf" (Peters; each task solved
-            alone, then projected: sound, not optimal).
+        law: "wbcf" (Sentis and Khatib; sound, and optimal on equalities), "tsid" (Del
+            Prete; least joint acceleration in the free space), or "uf" (Peters; each
+            task solved alone, then projected: sound, not optimal).
         damping: None for the exact truncated inverse.
 
     Raises:

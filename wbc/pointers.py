@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numba
 import numpy as np
-from numba import carray, types
+from numba import types
 from numba.extending import intrinsic
 
 from wbc.arrays import Array
@@ -18,8 +19,13 @@ from wbc.compiled import compiled
 __all__ = ["address_of", "floats_at"]
 
 
+_float64: Any = types.float64
+_pointer_type: Any = types.CPointer  # numba has no annotations
+_view: Any = numba.carray  # type: ignore[attr-defined] # nor a list of its exports
+
+
 @intrinsic
-def _pointer(typing_context: Any, address: Any) -> Any:
+def _as_pointer(typing_context: Any, address: Any) -> Any:
     """The address as a pointer to float64."""
     del typing_context, address
 
@@ -27,13 +33,16 @@ def _pointer(typing_context: Any, address: Any) -> Any:
         target = context.get_value_type(signature.return_type)
         return builder.inttoptr(arguments[0], target)
 
-    return types.CPointer(types.float64)(types.int64), generate
+    return _pointer_type(_float64)(types.int64), generate
+
+
+_pointer: Any = _as_pointer
 
 
 @compiled
 def floats_at(address: int, count: int) -> Array:
     """The float64 numbers (count,) that start at an address; nothing is copied."""
-    return carray(_pointer(address), (count,))  # type: ignore[no-any-return]
+    return _view(_pointer(address), (count,))  # type: ignore[no-any-return]
 
 
 def address_of(view: Array) -> int:

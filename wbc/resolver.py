@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
 
-from wbc.arrays import Array
+from wbc.arrays import Array, IntArray
 from wbc.stack import Stack
 
 __all__ = ["Answer", "Resolver", "Solver", "Status"]
@@ -31,14 +31,14 @@ class Answer:
 
     Attributes:
         vdot: (n,) joint accelerations.
-        ranks: for each level, how many independent directions it could use.
+        ranks: (p,) for each level, how many independent directions it could use.
         status: SOLVED or INCOMPLETE.
         slacks: (m,) weighted slack of every row when its own level was solved, or
             None where the resolver does not tell.
     """
 
     vdot: Array
-    ranks: tuple[int, ...]
+    ranks: IntArray
     status: Status
     slacks: Array | None = None
 

@@ -46,7 +46,8 @@ def rows_over(A: Array, bands: Array) -> Rows:
         A: (m, n).
         bands: (5, m) error, rate, drift, lower, upper.
     """
-    return Rows(*bands, A)
+    error, rate, drift, lower, upper = bands
+    return Rows(error, rate, drift, lower, upper, A)
 
 
 def allocate_rows(m: int, n: int) -> Rows:

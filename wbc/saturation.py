@@ -60,8 +60,8 @@ class Saturation(Solver):
         y, ranks, status = self._saturate(A) or self._strict(A)
         if not np.isfinite(y).all():
             raise SolverError("the projection gave a result that is not finite.")
-        vdot = stack.L_inv.T @ y if self._kinetic else y
-        return Answer(vdot, ranks, status)
+        vdot = stack.acceleration(y) if self._kinetic else y
+        return Answer(vdot, np.array(ranks), status)
 
     def _saturate(self, A: Array) -> _Found | None:
         """Hold the worst violated row, let go of one that pulls, until neither is."""

@@ -8,7 +8,7 @@ from typing import final
 
 import numpy as np
 
-from wbc.arrays import Array
+from wbc.arrays import Array, IntArray
 from wbc.certificate import Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, explain
@@ -56,13 +56,11 @@ class Solution:
         acceleration: (n,) joint accelerations that they cause in the model, NaN
             after a fallback.
         status: how the tick ended.
-        ranks: for each level, the independent directions that its equalities and its
-            active bounds could use.
         message: what went wrong, empty if nothing did.
     """
 
     __slots__ = (
-        "_slacks", "_stack", "_tick", "acceleration", "message", "ranks", "status",
+        "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message", "status",
         "torque",
     )  # fmt: skip
 
@@ -76,17 +74,26 @@ class Solution:
     ) -> None:
         self._stack, self._tick = stack, stack.tick
         self.torque, self.status, self.message = torque, status, message
-        self.acceleration = np.full(torque.size, np.nan)
-        self.ranks: tuple[int, ...] = ()
+        self._ranks: IntArray | None = None
         self._slacks: Array | None = None
-        if answer is not None:
-            self.acceleration, self.ranks = answer.vdot, answer.ranks
-            self._slacks = answer.slacks
+        if answer is None:
+            self.acceleration = np.full(torque.size, np.nan)
+        else:
+            self.acceleration = answer.vdot
+            self._ranks, self._slacks = answer.ranks, answer.slacks
 
     @property
     def ok(self) -> bool:
         """Whether the resolver answered."""
         return self.status in (Status.SOLVED, Status.INCOMPLETE)
+
+    @property
+    def ranks(self) -> tuple[int, ...]:
+        """For each level, the directions that its equalities and active bounds use.
+
+        Empty after a fallback.
+        """
+        return () if self._ranks is None else tuple(self._ranks.tolist())
 
     @property
     def lost(self) -> tuple[int, ...]:

@@ -7,12 +7,12 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.assembly import assemble
-from wbc.errors import ModelError
+from wbc.assembly import assemble, back_substitute, inverse_dynamics
+from wbc.errors import ModelError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.kernel import Kernel
 from wbc.robot import Robot
-from wbc.rows import Rows
+from wbc.rows import Rows, rows_over
 from wbc.rowswriter import Place, RowsWriter
 from wbc.state import State
 from wbc.task import Task
@@ -104,10 +104,11 @@ class Stack:
         )
         self.lower, self.upper = self._bounds
         self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
+        self._M = self.M
         self.weights, self._torque = np.ones(m), np.zeros(m)
         for term in self.terms:
             where = term.where
-            term.rows = Rows(*self.bands[:, where], self.raw[where])
+            term.rows = rows_over(self.raw[where], self.bands[:, where])
             self.weights[where] = term.weight
             self._torque[where] = term.task.space == "torque"
 
@@ -129,7 +130,7 @@ class Stack:
             self.bands,
             self.weights,
             self._torque,
-            self.M.T,
+            self._M,
             self.h,
             self.A,
             self.Ay,
@@ -142,6 +143,7 @@ class Stack:
     def _bind(self, state: State) -> None:
         """Read from another State's memory from now on."""
         self._state, self.M, self.h = state, state.M, state.h
+        self._M = state.M.T  # symmetric, and stored by rows as kernels want it
         places = [
             Place(
                 term.kernel,
@@ -155,6 +157,19 @@ class Stack:
         if places:
             self._writer = RowsWriter(places, state, self.lower.size)
 
+    def acceleration(self, y: Array) -> Array:
+        """Vdot = L^-T y, (n,)."""
+        vdot = np.empty(y.size)
+        back_substitute(self.L_inv, y, vdot)
+        return vdot
+
     def torque(self, vdot: Array) -> Array:
-        """Tau = M vdot + h, (n,) [Nm]."""
-        return self.M @ vdot + self.h
+        """Tau = M vdot + h, (n,) [Nm].
+
+        Raises:
+            SolverError: a torque is not finite.
+        """
+        tau = np.empty(vdot.size)
+        if not inverse_dynamics(self._M, self.h, vdot, tau):
+            raise SolverError("a torque is not finite.")
+        return tau

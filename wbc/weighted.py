@@ -58,9 +58,9 @@ class _Weighted(Solver):
         done = self._solver.solve(
             stack.Ay * factor[:, None], stack.lower * factor, stack.upper * factor
         )
-        ranks = tuple(min(where.stop - where.start, n) for where in stack.levels)
+        ranks = np.array([min(k.stop - k.start, n) for k in stack.levels])
         status = Status.SOLVED if done else Status.INCOMPLETE
-        return Answer(stack.L_inv.T @ self._solver.x, ranks, status)
+        return Answer(stack.acceleration(self._solver.x), ranks, status)
 
     def _leading_inequalities(self) -> int:
         """How many rows the levels above the first equality have."""

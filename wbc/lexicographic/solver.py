@@ -58,9 +58,10 @@ class Lexicographic:
         announce(_solve, "the solver")
 
     @property
-    def ranks(self) -> tuple[int, ...]:
-        """For each level, how many coordinates it took."""
-        return tuple(np.diff(self._work.first).tolist())
+    def ranks(self) -> IntArray:
+        """For each level (p,), how many coordinates it took."""
+        first = self._work.first
+        return first[1:] - first[:-1]
 
     def reset(self) -> None:
         """Forget the working set."""
