@@ -48,7 +48,7 @@ class Posture(CatalogueTask):
         super().__init__(name, "rad", (), PD(stiffness, damping))
         self.joints = None if joints is None else tuple(joints)
         self._target: Array | None = None
-        self._homes: dict[int, Array] = {}
+        self._homes: dict[int, tuple[Robot, Array]] = {}
         if target is not None:
             self.set_target(target)
 
@@ -65,7 +65,7 @@ class Posture(CatalogueTask):
         if self._target is None:
             self._target = checked.copy()
         self._target[:] = checked
-        for home in self._homes.values():
+        for _, home in self._homes.values():
             home[:] = checked
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
@@ -89,7 +89,7 @@ class Posture(CatalogueTask):
         if self._target is not None and id(robot) not in self._homes:
             return self._target
         home = robot.q_home[_indices(robot, self.joints)]
-        return self._homes.setdefault(id(robot), home)
+        return self._homes.setdefault(id(robot), (robot, home))[1]
 
     def table(self, robot: Robot) -> Array:
         """Indices of the joints."""

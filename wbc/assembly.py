@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import compiled, inner
 
 __all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics"]
 
@@ -67,7 +67,7 @@ def assemble(
     return True
 
 
-@compiled
+@inner
 def _invert_cholesky(M: Array, L_inv: Array) -> bool:
     """Inverse of L with M = L L^T, lower triangular; False if there is no such L."""
     n = M.shape[0]

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled
+from wbc.compiled import compiled, inner
 from wbc.pointers import address_of, floats_at
 
 __all__ = [
@@ -115,7 +115,7 @@ class Frames:
             constants[[14 + j for j in model.supports[joint] if j > 0]] = 1.0
 
 
-@compiled
+@inner
 def update_frame(
     flat: Array,
     pointers: IntArray,
@@ -158,7 +158,7 @@ def update_frame(
     return F
 
 
-@compiled
+@inner
 def _jacobian(F: FrameState, J: Array, constants: Array, n: int) -> None:
     """Columns of the joints that move the frame, from the world's origin to it."""
     p0, p1, p2 = F.p[0], F.p[1], F.p[2]
@@ -171,14 +171,14 @@ def _jacobian(F: FrameState, J: Array, constants: Array, n: int) -> None:
         F.J[3, j], F.J[4, j], F.J[5, j] = w0, w1, w2
 
 
-@compiled
+@inner
 def _turn(R: Array, x: Array, out: Array) -> None:
     """Out = R x, with R (9,) stored by columns."""
     for i in range(3):
         out[i] = R[i] * x[0] + R[i + 3] * x[1] + R[i + 6] * x[2]
 
 
-@compiled
+@inner
 def cross_into(a: Array, b: Array, out: Array) -> None:
     """Out = a x b."""
     out[0] = a[1] * b[2] - a[2] * b[1]

@@ -14,7 +14,8 @@ from numba import types
 from numba.extending import intrinsic
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
+from wbc.errors import InputError
 
 __all__ = ["address_of", "floats_at"]
 
@@ -39,13 +40,18 @@ def _as_pointer(typing_context: Any, address: Any) -> Any:
 _pointer: Any = _as_pointer
 
 
-@compiled
+@inner
 def floats_at(address: int, count: int) -> Array:
     """The float64 numbers (count,) that start at an address; nothing is copied."""
     return _view(_pointer(address), (count,))  # type: ignore[no-any-return]
 
 
 def address_of(view: Array) -> int:
-    """Where a float64 array begins; its owner must keep it alive and in place."""
-    assert view.dtype == np.float64
+    """Where an array begins; whoever takes the address must keep the array alive.
+
+    Raises:
+        InputError: not float64, or not contiguous.
+    """
+    if view.dtype != np.float64 or not view.flags.forc:
+        raise InputError("a kernel reads contiguous arrays of float64 only.")
     return int(view.ctypes.data)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, final
+from typing import NamedTuple, NoReturn, final
 
 import numpy as np
 
@@ -78,6 +78,17 @@ class RowsWriter:
             state.dt,
             A,
             bands,
+        )
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse copies and pickles, whose addresses would point elsewhere.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError(
+            "a controller reads Pinocchio's memory where it lies, so it cannot be "
+            "copied or pickled: make another one from the same robot and hierarchy."
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.rows import Rows
 
 __all__ = ["at_rest", "at_target", "joint_bounds", "torque_bounds"]
@@ -16,7 +16,7 @@ RECOVERY_SPEED = 0.25
 """Share of the velocity limit that the way back may use."""
 
 
-@compiled
+@inner
 def at_target(p: Array, table: Array, q: Array, out: Rows) -> None:
     """E = q - q_d for the joints whose indices the table holds. Parameters: q_d."""
     J = out.A
@@ -28,7 +28,7 @@ def at_target(p: Array, table: Array, q: Array, out: Rows) -> None:
         J[i, joint] = 1.0
 
 
-@compiled
+@inner
 def at_rest(table: Array, v: Array, out: Rows) -> None:
     """Velocity of the joints whose indices the table holds."""
     J = out.A
@@ -40,7 +40,7 @@ def at_rest(table: Array, v: Array, out: Rows) -> None:
         J[i, joint] = 1.0
 
 
-@compiled
+@inner
 def torque_bounds(p: Array, out: Rows) -> None:
     """-p <= tau <= p."""
     _identity(out.A)
@@ -48,7 +48,7 @@ def torque_bounds(p: Array, out: Rows) -> None:
         out.lower[i], out.upper[i] = -p[i], p[i]
 
 
-@compiled
+@inner
 def joint_bounds(
     p: Array, table: Array, q: Array, v: Array, dt: float, out: Rows
 ) -> None:
@@ -70,14 +70,14 @@ def joint_bounds(
         out.lower[i], out.upper[i] = lower, upper
 
 
-@compiled
+@inner
 def _identity(J: Array) -> None:
     J[:] = 0.0
     for i in range(J.shape[0]):
         J[i, i] = 1.0
 
 
-@compiled
+@inner
 def semi_implicit(
     gap: float, v: float, V: float, A: float, stop: float, dt: float
 ) -> float:
@@ -101,7 +101,7 @@ def semi_implicit(
     return min(max((after - v) / dt, -A), A)
 
 
-@compiled
+@inner
 def exact(gap: float, v: float, V: float, A: float, stop: float, dt: float) -> float:
     """Largest acceleration towards a limit, constant over dt (Del Prete 2018).
 
@@ -123,7 +123,7 @@ def exact(gap: float, v: float, V: float, A: float, stop: float, dt: float) -> f
     return min(max(min(position, (V - v) / dt, viable), -A), A)
 
 
-@compiled
+@inner
 def _way_back(gap: float, V: float) -> float:
     """Velocity wanted beyond a limit: back in, at a share of the limit's speed."""
     return max(gap / RECOVERY, -RECOVERY_SPEED * V)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tasks.kernels.rotations import in_world, turn_to
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, cross_into
 from wbc.rows import Rows
 
@@ -75,7 +75,7 @@ def write_point(table: Array, s: float, out: Array) -> None:
             out[2, j] = out[3, j] = 0.0
 
 
-@compiled
+@inner
 def _taylor(a: Array, x: float, out: Array) -> None:
     """A quintic, highest power first, and three derivatives (Horner)."""
     value, first, second, third = a[0], 0.0, 0.0, 0.0
@@ -110,7 +110,7 @@ def locate(table: Array, p: Array, point: Array) -> float:
     return s
 
 
-@compiled
+@inner
 def _nearest_sample(table: Array, p: Array) -> float:
     pieces, count = int(table[2]), int(table[3])
     samples = table[HEADER + 55 * pieces : HEADER + 55 * pieces + 3 * count]
@@ -127,7 +127,7 @@ def _nearest_sample(table: Array, p: Array) -> float:
     return table[1] * nearest / (count - 1)  # type: ignore[no-any-return]
 
 
-@compiled
+@inner
 def follow(table: Array, F: FrameState, scratch: Array) -> Along:
     """From c'(s) . (p - c(s)) = 0, differentiated twice."""
     n = F.J.shape[1]
@@ -155,7 +155,7 @@ def follow(table: Array, F: FrameState, scratch: Array) -> Along:
     return Along(s, rate, drift, J, point)
 
 
-@compiled
+@inner
 def on_curve(table: Array, F: FrameState, scratch: Array, out: Rows) -> None:
     """e_i = n_i(s) . (p - c(s)); s moves with the robot."""
     path = follow(table, F, scratch)
@@ -178,7 +178,7 @@ def on_curve(table: Array, F: FrameState, scratch: Array, out: Rows) -> None:
                 J[i, j] += c[0, k + m] * J_F[m, j]
 
 
-@compiled
+@inner
 def speed(
     p: Array, table: Array, F: FrameState, t: float, scratch: Array, out: Rows
 ) -> None:
@@ -198,7 +198,7 @@ def speed(
         J[0, j] = path.J[j]
 
 
-@compiled
+@inner
 def _fall(left: float, k: float) -> tuple[float, float]:
     """Share of the speed with `left` metres to go, and its slope [1/m]."""
     if k * left >= 0.5 * np.pi:
@@ -208,7 +208,7 @@ def _fall(left: float, k: float) -> tuple[float, float]:
     return (k * left, k) if k * left > -1.0 else (-1.0, 0.0)
 
 
-@compiled
+@inner
 def along_path(
     p: Array, table: Array, F: FrameState, scratch: Array, out: Rows
 ) -> None:

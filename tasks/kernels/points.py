@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.frames import FrameState
 from wbc.rows import Rows
 
 __all__ = ["on_line", "on_plane", "on_point"]
 
 
-@compiled
+@inner
 def on_point(p: Array, F: FrameState, out: Rows) -> None:
     """E = p_WF - p_d. Parameters: p_d, its velocity, its acceleration."""
     J, J_F = out.A, F.J
@@ -22,20 +22,20 @@ def on_point(p: Array, F: FrameState, out: Rows) -> None:
             J[i, j] = J_F[i, j]
 
 
-@compiled
+@inner
 def on_line(p: Array, F: FrameState, out: Rows) -> None:
     """e_i = n_i . (p_WF - p_0). Parameters: p_0, n_1, n_2."""
     across(p, p[3:6], F, out, 0)
     across(p, p[6:9], F, out, 1)
 
 
-@compiled
+@inner
 def on_plane(p: Array, F: FrameState, out: Rows) -> None:
     """E = n . (p_WF - p_0). Parameters: p_0, n."""
     across(p, p[3:6], F, out, 0)
 
 
-@compiled
+@inner
 def across(p: Array, n: Array, F: FrameState, out: Rows, i: int) -> None:
     """Row i: distance of F's origin from p_0 = p[:3] along a fixed direction n."""
     J, J_F = out.A, F.J

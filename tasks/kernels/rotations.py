@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.frames import FrameState, cross_into
 from wbc.rows import Rows
 
 __all__ = ["along", "orientation", "pose", "rotation_between", "rotation_vector"]
 
 
-@compiled
+@inner
 def orientation(p: Array, F: FrameState, scratch: Array, out: Rows, first: int) -> None:
     """E = log(R_WF R_d^T). Parameters: R_d, angular velocity and acceleration of it.
 
@@ -39,7 +39,7 @@ def orientation(p: Array, F: FrameState, scratch: Array, out: Rows, first: int) 
             J[first + i, j] = J_F[3 + i, j]
 
 
-@compiled
+@inner
 def rotation_vector(R: Array, out: Array) -> None:
     """Logarithm of R (9,), row by row, through the quaternion of largest component.
 
@@ -65,7 +65,7 @@ def rotation_vector(R: Array, out: Array) -> None:
     out[0], out[1], out[2] = factor * x, factor * y, factor * z
 
 
-@compiled
+@inner
 def pose(p: Array, F: FrameState, scratch: Array, out: Rows) -> None:
     """Position, then orientation. Parameters: those of both, one after the other."""
     J, J_F = out.A, F.J
@@ -78,7 +78,7 @@ def pose(p: Array, F: FrameState, scratch: Array, out: Rows) -> None:
     orientation(p[9:], F, scratch, out, 3)
 
 
-@compiled
+@inner
 def along(p: Array, F: FrameState, scratch: Array, out: Rows) -> None:
     """An axis a of F along a direction n; turning about a is free.
 
@@ -100,7 +100,7 @@ def along(p: Array, F: FrameState, scratch: Array, out: Rows) -> None:
             J[i, j] = b[0] * J_F[3, j] + b[1] * J_F[4, j] + b[2] * J_F[5, j]
 
 
-@compiled
+@inner
 def in_world(triad: Array, F: FrameState, B: Array) -> None:
     """Three directions of F (9,), one after the other, in the world's axes."""
     for k in range(3):
@@ -110,7 +110,7 @@ def in_world(triad: Array, F: FrameState, B: Array) -> None:
                 B[3 * k + i] += F.R[i, j] * triad[3 * k + j]
 
 
-@compiled
+@inner
 def turn_to(B: Array, n: Array, e: Array, out: Rows) -> None:
     """Errors of the axis B[:3] against n on the two directions across it."""
     rotation_between(B[:3], n, B[3:6], e)
@@ -119,7 +119,7 @@ def turn_to(B: Array, n: Array, e: Array, out: Rows) -> None:
         out.error[i] = -(b[0] * e[0] + b[1] * e[1] + b[2] * e[2])
 
 
-@compiled
+@inner
 def rotation_between(a: Array, n: Array, spare: Array, out: Array) -> None:
     """Rotation vector of the shortest turn from a to n, unit vectors.
 

@@ -26,7 +26,7 @@ from wbc import (
     allocate_rows,
     resolve,
 )
-from wbc.explain import Reason, Side
+from wbc.explain.data import Reason, Side
 
 SEEDS = range(100)
 CLOSE = {"rtol": DIFFERENCE, "atol": DIFFERENCE}

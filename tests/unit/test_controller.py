@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -424,3 +427,23 @@ def test_resolving_one_state_is_the_tick_of_a_controller():
     tick = Controller(robot, hierarchy)(HOME, STILL + 0.1)
     once = resolve(robot.state(HOME, STILL + 0.1), hierarchy)
     np.testing.assert_array_equal(once.torque, tick.torque)
+
+
+@pytest.mark.parametrize("duplicate", [copy.deepcopy, pickle.dumps])
+def test_a_controller_cannot_be_copied_because_it_reads_memory_in_place(duplicate):
+    robot = six_axis()
+    control = Controller(robot, Posture())
+    control(robot.q_home, np.zeros(robot.nv))
+    with pytest.raises(InputError, match="make another one"):
+        duplicate(control._stack._writer)
+
+
+def test_a_task_keeps_following_its_target_in_two_controllers_at_once():
+    robot, posture = six_axis(), Posture()
+    controls = [Controller(robot, posture) for _ in range(2)]
+    still = np.zeros(robot.nv)
+    before = [c(robot.q_home, still).acceleration for c in controls]
+    posture.set_target(robot.q_home + 0.1)
+    after = [c(robot.q_home, still).acceleration for c in controls]
+    assert np.allclose(before, 0.0)
+    assert np.allclose(after, 25.0 * 0.1)

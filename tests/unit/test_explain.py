@@ -21,7 +21,7 @@ from wbc import (
     WeightedQP,
     resolve,
 )
-from wbc.explain import OPTIMAL
+from wbc.explain.findings import OPTIMAL
 
 N = 7
 HOME = seven_axis().q_home

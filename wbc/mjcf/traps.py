@@ -1,8 +1,8 @@
 """What a controller's model could not contain of an MJCF: refused by name.
 
 Refused is what would make the engines' M, h or poses differ, and torques that depend on
-the posture or hide in the world. Losses, which only slow the robot, are notes
-(`mjcf_notes`).
+the posture or hide in the world. Losses, which only slow the robot, are
+`notes`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from wbc.errors import ModelError
-from wbc.mjcf_source import Source, label
+from wbc.mjcf.source import Source, label
 
 __all__ = ["refuse_traps"]
 

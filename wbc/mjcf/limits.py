@@ -15,7 +15,7 @@ import numpy as np
 
 from wbc.arrays import Array
 from wbc.errors import ModelError
-from wbc.mjcf_source import Source, label
+from wbc.mjcf.source import Source, label
 
 __all__ = ["gravity", "is_motor", "position_limits", "torque_limits", "torque_ranges"]
 

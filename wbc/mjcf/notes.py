@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from wbc.mjcf_limits import is_motor, torque_ranges
-from wbc.mjcf_source import Source, label
+from wbc.mjcf.limits import is_motor, torque_ranges
+from wbc.mjcf.source import Source, label
 
 __all__ = ["notes"]
 

@@ -20,7 +20,7 @@ import pinocchio as pin
 from wbc.arrays import Array
 from wbc.errors import ModelError
 from wbc.linalg import cross
-from wbc.mjcf_source import Source, label
+from wbc.mjcf.source import Source, label
 
 __all__ = ["quaternion", "robot_tree"]
 

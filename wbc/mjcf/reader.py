@@ -2,7 +2,7 @@
 
 Pinocchio reads one kinematic tree, skips what it does not know, and takes some of what
 it does know differently from MuJoCo. What it would change in silence is either mended
-(`mjcf_tree`, `mjcf_limits`) or refused with a `ModelError` (`mjcf_traps`).
+(`tree`, `limits`) or refused with a `ModelError` (`traps`).
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import pinocchio as pin
 
 from wbc.arrays import Array
 from wbc.errors import ModelError
-from wbc.mjcf_limits import gravity, position_limits, torque_limits
-from wbc.mjcf_notes import notes
-from wbc.mjcf_source import Source
-from wbc.mjcf_traps import refuse_traps
-from wbc.mjcf_tree import robot_tree
+from wbc.mjcf.limits import gravity, position_limits, torque_limits
+from wbc.mjcf.notes import notes
+from wbc.mjcf.source import Source
+from wbc.mjcf.traps import refuse_traps
+from wbc.mjcf.tree import robot_tree
 
 __all__ = ["Mjcf", "read_mjcf"]
 

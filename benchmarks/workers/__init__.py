@@ -1,0 +1,1 @@
+"""Long-lived processes, one an environment, that run ticks when asked to."""
