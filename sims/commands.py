@@ -23,7 +23,7 @@ from wbc import InputError
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
 
-PACKAGES = ("wbc", "pin", "mujoco", "proxsuite", "qpsolvers", "numpy", "scipy")
+PACKAGES = ("wbc", "pin", "mujoco", "numba", "proxsuite", "qpsolvers", "numpy", "scipy")
 
 
 def list_cells() -> int:

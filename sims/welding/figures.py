@@ -74,13 +74,9 @@ def _curve(log: Log) -> tuple[str, str]:
 
 
 def _angles(log: Log) -> tuple[str, str]:
-    svg = time_series(
-        "Saddle: travel angle",
-        log.t,
-        {"travel angle": np.degrees(travel_angle(log))},
-        "angle [deg]",
-        bounds={"wanted": float(np.degrees(TRAVEL))},
-    )
+    error = (travel_angle(log) - TRAVEL) * MILLI
+    title = f"Saddle: travel angle, wanted {np.degrees(TRAVEL):.1f} deg"
+    svg = time_series(title, log.t, {"travel angle": error}, "angle error [mrad]")
     return "The torch pushes at a constant angle all around the pipe.", svg
 
 
