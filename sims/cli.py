@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 
 from sims.commands import audit_model, bench, compare, list_cells, run_cell
 from sims.demo import Options
@@ -36,6 +37,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="wbc", description="Whole-body control in simulated cells."
     )
+    parser.add_argument("--version", action="version", version=version("wbc"))
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add(commands, "list", "names the cells", lambda _: list_cells())
     run = _add(
@@ -61,7 +63,7 @@ def _parser() -> argparse.ArgumentParser:
     speed = _add(
         commands, "bench", "times the tick of every resolver", lambda a: bench(a.ticks)
     )
-    speed.add_argument("--ticks", type=_count, default=2000, help="ticks of each")
+    speed.add_argument("--ticks", type=count, default=2000, help="ticks of each")
     audit = _add(
         commands,
         "audit",
@@ -84,11 +86,11 @@ def _add(commands, name, about, action):  # type: ignore[no-untyped-def] # priva
 def _common(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--duration",
-        type=_seconds,
+        type=seconds,
         metavar="S",
         help="longest simulated time of each job of the cell [s]",
     )
-    command.add_argument("--seed", type=int, default=0, help="of everything random")
+    command.add_argument("--seed", type=seed, default=0, help="of everything random")
     command.add_argument(
         "--mismatch",
         action="store_true",
@@ -109,14 +111,24 @@ def _options(asked: argparse.Namespace) -> Options:
     )
 
 
-def _seconds(text: str) -> float:
+def seconds(text: str) -> float:
+    """A positive time, for the argument parser."""
     value = float(text)
     if not 0.0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"must be a positive number, got {text}")
     return value
 
 
-def _count(text: str) -> int:
+def seed(text: str) -> int:
+    """A seed, for the argument parser."""
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must not be negative, got {text}")
+    return value
+
+
+def count(text: str) -> int:
+    """A positive number, for the argument parser."""
     value = int(text)
     if value < 1:
         raise argparse.ArgumentTypeError(f"must be at least 1, got {text}")

@@ -26,7 +26,11 @@ class CatalogueTask(MotionTask):
 
     @abstractmethod
     def parameters(self, robot: Robot) -> Array:
-        """Numbers that the kernel reads; a live array where they can change."""
+        """Numbers that the kernel reads."""
+
+    def live_parameters(self, robot: Robot) -> Array:
+        """The same for a stack: an array that later changes of the target reach."""
+        return self.parameters(robot)
 
     def table(self, robot: Robot) -> Array:
         """More of them, constant."""
@@ -42,7 +46,7 @@ class CatalogueTask(MotionTask):
         return Kernel(
             write_rows,
             int(self.code),
-            self.parameters(robot),
+            self.live_parameters(robot),
             self.table(robot),
             np.broadcast_to(stiffness, (m,)),
             np.broadcast_to(self.law.damping, (m,)),

@@ -27,7 +27,7 @@ class TorqueLimits(Task):
         name: "torque limits" by default.
 
     Raises:
-        InputError: the fraction is not greater than 0.
+        InputError: the fraction is not greater than 0, or above 1.
     """
 
     space = "torque"
@@ -35,6 +35,8 @@ class TorqueLimits(Task):
     def __init__(self, fraction: float = 1.0, *, name: str = "torque limits") -> None:
         super().__init__(name, "Nm")
         self.fraction = positive(fraction, "fraction")
+        if self.fraction > 1.0:
+            raise InputError("fraction is a share of the torque limits, at most 1.")
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from typing import final
 
@@ -46,27 +47,31 @@ class Posture(CatalogueTask):
         name: str = "posture",
     ) -> None:
         super().__init__(name, "rad", (), PD(stiffness, damping))
-        self.joints = None if joints is None else tuple(joints)
+        self.joints = _listed(joints, name)
         self._target: Array | None = None
-        self._homes: dict[int, tuple[Robot, Array]] = {}
+        self._bound: list[weakref.ref[Array]] = []
         if target is not None:
             self.set_target(target)
 
     def set_target(self, target: ArrayLike) -> None:
-        """Change the target; a copy is kept.
+        """Change the target, also for the stacks that the task stands in already.
 
         Raises:
-            InputError: not finite, or not as long as before.
+            InputError: not finite, or not as long as before; the target stays.
         """
-        shape = np.shape(target) if self._target is None else self._target.shape
+        in_use = [a for a in (ref() for ref in self._bound) if a is not None]
+        known = in_use if self._target is None else [self._target, *in_use]
+        shape = known[0].shape if known else np.shape(target)
         if len(shape) != 1:
             raise InputError(f"target of '{self.name}' must be of shape (n,).")
         checked = frozen(target, shape, f"target of '{self.name}'")
-        if self._target is None:
-            self._target = checked.copy()
-        self._target[:] = checked
-        for _, home in self._homes.values():
-            home[:] = checked
+        if any(array.shape != shape for array in known):
+            raise InputError(
+                f"'{self.name}' stands in stacks of different robots: give each one."
+            )
+        self._target = checked
+        for array in in_use:
+            array[:] = checked
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -85,11 +90,17 @@ class Posture(CatalogueTask):
             )
 
     def parameters(self, robot: Robot) -> Array:
-        """The target, live; the robot's home while none was given."""
-        if self._target is not None and id(robot) not in self._homes:
+        """The target; the robot's home while none was given."""
+        if self._target is not None:
             return self._target
-        home = robot.q_home[_indices(robot, self.joints)]
-        return self._homes.setdefault(id(robot), (robot, home))[1]
+        return robot.q_home[_indices(robot, self.joints)]
+
+    def live_parameters(self, robot: Robot) -> Array:
+        """A copy for one stack, which `set_target` follows as long as it is in use."""
+        live = self.parameters(robot).copy()
+        self._bound = [ref for ref in self._bound if ref() is not None]
+        self._bound.append(weakref.ref(live))
+        return live
 
     def table(self, robot: Robot) -> Array:
         """Indices of the joints."""
@@ -119,7 +130,7 @@ class Damping(CatalogueTask):
         name: str = "damping",
     ) -> None:
         super().__init__(name, "rad/s", (), Damper(rate))
-        self.joints = None if joints is None else tuple(joints)
+        self.joints = _listed(joints, name)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -139,6 +150,14 @@ class Damping(CatalogueTask):
     def table(self, robot: Robot) -> Array:
         """Indices of the joints."""
         return np.array(_indices(robot, self.joints), dtype=np.float64)
+
+
+def _listed(joints: Sequence[str] | None, task: str) -> tuple[str, ...] | None:
+    if joints is None:
+        return None
+    if isinstance(joints, str) or len(set(joints)) < len(joints):
+        raise InputError(f"joints of '{task}' must be a list of different names.")
+    return tuple(joints)
 
 
 def _indices(robot: Robot, joints: tuple[str, ...] | None) -> list[int]:

@@ -11,6 +11,15 @@ __all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics"]
 
 
 @compiled
+def finite(x: Array) -> bool:
+    """Whether no number of x (n,) is NaN or infinite."""
+    good = True
+    for value in x:
+        good = good and np.isfinite(value)
+    return bool(good)
+
+
+@compiled
 def assemble(
     raw: Array,
     bands: Array,
@@ -22,7 +31,7 @@ def assemble(
     Ay: Array,
     bounds: Array,
     L_inv: Array,
-) -> bool:
+) -> int:
     """Weighted rows in vdot, and in y = L^T vdot with M = L L^T.
 
     Torque rows become acceleration rows through tau = M vdot + h.
@@ -40,11 +49,12 @@ def assemble(
         L_inv: (n, n) inverse of the Cholesky factor is written.
 
     Returns:
-        whether the inertia is positive definite.
+        -1 if all is well, -2 if the inertia is not positive definite, else the index of
+        a row that is not finite (bounds may be infinite, but not NaN).
     """
     m, n = A.shape
     if not _invert_cholesky(M, L_inv):
-        return False
+        return -2
     for i in range(m):
         bias, weight = 0.0, weights[i]
         if torque[i] == 0.0:
@@ -64,7 +74,9 @@ def assemble(
             for k in range(j + 1):
                 total += A[i, k] * L_inv[j, k]
             Ay[i, j] = total
-    return True
+        if not finite(Ay[i]) or np.isnan(bounds[0, i]) or np.isnan(bounds[1, i]):
+            return i
+    return -1
 
 
 @inner
@@ -112,12 +124,3 @@ def inverse_dynamics(M: Array, h: Array, vdot: Array, tau: Array) -> bool:
         for j in range(n):
             tau[i] += M[i, j] * vdot[j]
     return finite(tau)
-
-
-@compiled
-def finite(x: Array) -> bool:
-    """Whether no number of x (n,) is NaN or infinite."""
-    good = True
-    for value in x:
-        good = good and np.isfinite(value)
-    return bool(good)

@@ -1,15 +1,18 @@
 """Compilation of the numerical kernels: plain Python loops, compiled by numba.
 
-Compiled code is kept in the user's cache folder, so only the first use of a version
-waits. numba looks for changes in a kernel's own file only, not in those of the kernels
-that it calls; therefore each state of the sources has a cache folder of its own.
+Compiled code is kept in the user's cache folder, or a temporary one where that cannot
+be written, so only the first use of a version waits. numba looks for changes in a
+kernel's own file only, not in those of the kernels that it calls; therefore each state
+of the sources has a cache folder of its own.
 """
 
 from __future__ import annotations
 
+import getpass
 import hashlib
 import os
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast
@@ -25,8 +28,8 @@ ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 """Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
 
 
-def _cache_folder() -> Path:
-    """Where compiled code of exactly these kernels belongs."""
+def _digest() -> str:
+    """Of exactly these kernels."""
     digest = hashlib.sha256()
     here = Path(__file__).parent
     for folder in (here, here.with_name("tasks")):
@@ -34,8 +37,22 @@ def _cache_folder() -> Path:
             text = source.read_bytes()
             if b"wbc.compiled" in text or b"NamedTuple" in text:
                 digest.update(text)
-    root = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(root) / "wbc" / f"kernels-{digest.hexdigest()[:16]}"
+    return digest.hexdigest()[:16]
+
+
+def _cache_folder() -> Path | None:
+    """Where compiled code belongs; None where nothing can be written."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    spare = Path(tempfile.gettempdir()) / f"wbc-{getpass.getuser()}"
+    for root in (Path(home) / "wbc", spare):
+        folder = root / f"kernels-{_digest()}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+            with tempfile.TemporaryFile(dir=folder):
+                return folder
+        except OSError:
+            continue
+    return None
 
 
 CACHE: Final = _cache_folder()
@@ -61,10 +78,10 @@ def inner(function: Function) -> Function:
 
 def _compile(function: Function, **options: Any) -> Function:
     elsewhere = SETTINGS.CACHE_DIR
-    SETTINGS.CACHE_DIR = elsewhere or str(CACHE)
+    SETTINGS.CACHE_DIR = elsewhere or str(CACHE or "")
     try:
         compile_it: Any = numba.njit(
-            cache=True, fastmath=ALLOWED, error_model="numpy", **options
+            cache=CACHE is not None, fastmath=ALLOWED, error_model="numpy", **options
         )
         return cast(Function, compile_it(function))
     finally:
@@ -75,9 +92,6 @@ def announce(kernel: Any, what: str) -> None:
     """Say on standard error that a compilation is about to start, if one is."""
     if kernel.signatures:
         return
-    cache = Path(kernel.stats.cache_path)
-    if not any(cache.glob(f"*{kernel.__name__}-*.nbc")):
-        sys.stderr.write(
-            f"wbc: compiling {what}, once; this takes up to half a minute ...\n"
-        )
+    if CACHE is None or not any(CACHE.rglob(f"*{kernel.__name__}-*.nbc")):
+        sys.stderr.write(f"wbc: compiling {what}, once; up to half a minute ...\n")
         sys.stderr.flush()

@@ -60,12 +60,17 @@ class Controller:
         self.robot = robot
         self.hierarchy = Hierarchy.of(hierarchy)
         self.resolver = HierarchicalQP() if resolver is None else resolver
+        if not isinstance(self.resolver, Resolver):
+            raise InputError(
+                f"expected a resolver such as HierarchicalQP() or NullSpace(), got "
+                f"{resolver!r}."
+            )
         self.dt = positive(dt, "dt")
         self.failures = 0
         self._stack = Stack(robot, self.hierarchy)
         self._solver = self.resolver.start(self._stack)
         self._state = State(robot, self.dt)
-        self._gravity = robot.state(robot.q_home).gravity()
+        self._last = robot.q_home
         self._damping = np.diag(robot.state(robot.q_home).M) * FALLBACK_DAMPING
         self._no_wrench: dict[str, Array] = {}
 
@@ -93,7 +98,7 @@ class Controller:
             raise InputError(f"q and v have shapes {q.shape}, {v.shape}; need ({n},).")
         measured = self._no_wrench
         if wrenches:
-            measured = {k: np.array(w, dtype=np.float64) for k, w in wrenches.items()}
+            measured = {k: _wrench(k, w) for k, w in wrenches.items()}
         if not self._finite(q, v, t, measured):
             return self._hold(
                 q, v, Status.SENSOR_INVALID, "a measurement is not finite"
@@ -104,6 +109,7 @@ class Controller:
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
     ) -> Solution:
         stack = self._stack
+        self._last = q
         self._state.refresh(q, v, t, wrenches)
         try:
             stack.update(self._state)
@@ -120,19 +126,32 @@ class Controller:
         return all(finite(w) for w in wrenches.values())
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
-        """Gravity compensation and damping; unknown joints count as at rest."""
+        """Gravity compensation and damping within the torque limits.
+
+        Joints whose reading is not finite count as where they last were, and at rest.
+        """
         self.failures += 1
-        if np.isfinite(q).all():
-            self._gravity = self.robot.state(q).gravity()
+        self._last = np.where(np.isfinite(q), q, self._last)
+        gravity = self.robot.state(self._last).gravity()
         braking = self._damping * np.where(np.isfinite(v), v, 0.0)
         limit = self.robot.tau_max
-        torque = np.clip(self._gravity - braking, -limit, limit)
+        torque = np.clip(gravity - braking, -limit, limit)
         return Solution(self._stack, torque, None, status, message)
 
     def __repr__(self) -> str:
         return (
             f"Controller({self.robot.name}, {self.hierarchy!r}, {self.resolver.name})"
         )
+
+
+def _wrench(sensor: str, value: ArrayLike) -> Array:
+    """A measured wrench (6,), which may be NaN but not of another shape."""
+    wrench = np.array(value, dtype=np.float64)
+    if wrench.shape != (6,):
+        raise InputError(
+            f"wrench '{sensor}' has shape {wrench.shape}; it must be (6,)."
+        )
+    return wrench
 
 
 def resolve(

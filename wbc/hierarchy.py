@@ -22,6 +22,7 @@ class Level:
     """
 
     __slots__ = ("terms",)
+    __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, terms: tuple[tuple[Task, float], ...]) -> None:
         if not terms:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import NoReturn, final
 
 import numpy as np
 
@@ -117,6 +117,7 @@ class Stack:
 
         Raises:
             ModelError: the inertia matrix is not positive definite.
+            SolverError: a task wrote a row that is not finite.
         """
         if state is not self._state:
             self._bind(state)
@@ -125,7 +126,7 @@ class Stack:
             self._writer.write(self.raw, self.bands)
         for term in self._python:
             term.task.update(state, term.rows)
-        regular = assemble(
+        outcome = assemble(
             self.raw,
             self.bands,
             self.weights,
@@ -137,8 +138,19 @@ class Stack:
             self._bounds,
             self.L_inv,
         )
-        if not regular:
-            raise ModelError("the inertia matrix is not positive definite.")
+        if outcome != -1:
+            self._complain(outcome)
+
+    def _complain(self, outcome: int) -> NoReturn:
+        """Say which row is not finite, or that the inertia is no inertia."""
+        for term in self.terms:
+            if term.where.start <= outcome < term.where.stop:
+                row = term.names[outcome - term.where.start]
+                raise SolverError(
+                    f"task '{term.task.name}' wrote a row '{row}' that is not finite.",
+                    term.level,
+                )
+        raise ModelError("the inertia matrix is not positive definite.")
 
     def _bind(self, state: State) -> None:
         """Read from another State's memory from now on."""

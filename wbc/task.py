@@ -31,6 +31,7 @@ class Task(ABC):
     """
 
     space: Space = "acceleration"
+    __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
         self.name, self.unit, self.frames = name, unit, frames
@@ -133,7 +134,8 @@ class MotionTask(Task):
 
     def update(self, state: State, rows: Rows) -> None:
         """Ask for the acceleration that the law wants."""
-        rows.rate[:] = 0.0
+        for array in (rows.error, rows.rate, rows.drift, rows.A):
+            array[:] = 0.0
         self.evaluate(state, rows)
         rows.rate[:] += rows.A @ state.v
         rows.upper[:] = self.law.acceleration(rows.error, rows.rate) - rows.drift
