@@ -12,6 +12,7 @@ from tasks import Damping, FramePosition, JointLimits, Posture, TorqueLimits
 from tests.arms import seven_axis, six_axis
 from tests.catalogue import RawRows
 from wbc import (
+    PD,
     Controller,
     Damper,
     HierarchicalQP,
@@ -447,3 +448,65 @@ def test_a_task_keeps_following_its_target_in_two_controllers_at_once():
     after = [c(robot.q_home, still).acceleration for c in controls]
     assert np.allclose(before, 0.0)
     assert np.allclose(after, 25.0 * 0.1)
+
+
+def test_the_fallback_holds_the_posture_that_the_robot_was_in():
+    robot = seven_axis()
+    control, still = Controller(robot, Posture()), np.zeros(7)
+    q = robot.q_home + 0.4
+    control(q, still)
+    gravity = robot.state(q).gravity()
+    blind = control(np.full(7, np.nan), still)
+    assert np.allclose(blind.torque, gravity)
+    one_lost = np.where(np.arange(7) == 3, np.nan, q)
+    assert np.allclose(control(one_lost, still).torque, gravity)
+
+
+@pytest.mark.parametrize("where", ["error", "drift", "A"])
+@pytest.mark.parametrize("resolver", [HierarchicalQP, NullSpace])
+def test_a_task_that_writes_nan_is_named_and_the_robot_held(where, resolver):
+    class Broken(MotionTask):
+        def evaluate(self, state, out):
+            getattr(out, where)[:] = np.nan
+
+    robot = six_axis()
+    broken = Broken("broken", "m", ("x",), Damper(1.0))
+    if where == "error":
+        broken = Broken("broken", "m", ("x",), PD(1.0))
+    control = Controller(robot, broken >> Posture(), resolver())
+    solution = control(robot.q_home, np.zeros(robot.nv))
+    assert solution.status is Status.SOLVER_FAILED
+    assert "'broken' wrote a row 'x'" in solution.message
+    assert np.isfinite(solution.torque).all()
+
+
+def test_one_posture_follows_each_robots_own_home():
+    posture = Posture()
+    for robot in (six_axis(), seven_axis(), six_axis()):
+        control = Controller(robot, posture)
+        q = robot.q_home + 0.1
+        acceleration = control(q, np.zeros(robot.nv)).acceleration
+        assert np.allclose(acceleration, -25.0 * 0.1)
+
+
+def test_a_target_of_the_wrong_size_is_refused_and_the_old_one_stays():
+    robot, posture = six_axis(), Posture()
+    control = Controller(robot, posture)
+    with pytest.raises(InputError, match="must be"):
+        posture.set_target([0.0, 0.0, 0.0])
+    posture.set_target(robot.q_home)
+    still = np.zeros(robot.nv)
+    assert np.allclose(control(robot.q_home, still).acceleration, 0.0)
+
+
+@pytest.mark.parametrize("resolver", ["hqp", HierarchicalQP])
+def test_what_is_no_resolver_is_refused(resolver):
+    with pytest.raises(InputError, match="expected a resolver"):
+        Controller(six_axis(), Posture(), resolver)
+
+
+def test_a_wrench_of_the_wrong_shape_is_refused():
+    robot = six_axis()
+    control = Controller(robot, Posture())
+    with pytest.raises(InputError, match="wrench 'wrist'"):
+        control(robot.q_home, np.zeros(robot.nv), 0.0, {"wrist": [1.0, 2.0]})

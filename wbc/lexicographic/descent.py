@@ -10,7 +10,7 @@ fixed for good and the next level begins. The last level is the wish for least n
 from __future__ import annotations
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.lexicographic.multipliers import (
     SIGN,
     multipliers,
@@ -24,7 +24,7 @@ from wbc.lexicographic.work import Work
 __all__ = ["descend"]
 
 
-@compiled
+@inner
 def descend(
     A: Array,
     lower: Array,
@@ -70,7 +70,7 @@ def descend(
     return sweeps
 
 
-@compiled
+@inner
 def _hold_violated(
     A: Array, lower: Array, upper: Array, w: Work, k: int, feasibility: float
 ) -> None:
@@ -83,7 +83,7 @@ def _hold_violated(
             side[r] = 1 if out > 0.0 else -1 if out < 0.0 else 0
 
 
-@compiled
+@inner
 def _aim(w: Work, taken: int, least_norm: bool) -> None:
     """The swept coordinates, the others as they are, or zero at the last level."""
     target, x, c = w.target, w.x, w.c
@@ -98,7 +98,7 @@ def _aim(w: Work, taken: int, least_norm: bool) -> None:
     reflect_back(target, w.V, w.beta, taken)
 
 
-@compiled
+@inner
 def _first_event(
     A: Array, lower: Array, upper: Array, w: Work, k: int, feasibility: float
 ) -> tuple[int, int, float]:
@@ -129,7 +129,7 @@ def _first_event(
     return row, new, step
 
 
-@compiled
+@inner
 def _settle(w: Work, k: int) -> int:
     """The held bound that pulls most; where none does, those that push stay: -1."""
     start, count, order, side = w.start, w.count, w.order, w.side

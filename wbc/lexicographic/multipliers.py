@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.lexicographic.vectors import add_scaled, dot
 from wbc.lexicographic.work import Work
 
@@ -23,7 +23,7 @@ VANISHING = 1e-12
 """A force below this, relative to the level's rows and bounds, is round-off."""
 
 
-@compiled
+@inner
 def multipliers(w: Work, k: int) -> float:
     """Multipliers of the rows above level k for its force A_k^T s_k.
 
@@ -55,7 +55,7 @@ def multipliers(w: Work, k: int) -> float:
     return force
 
 
-@compiled
+@inner
 def _peel(
     W: Array, multiplier: Array, pull: Array, rows: IntArray, first: int, rank: int
 ) -> None:
@@ -71,7 +71,7 @@ def _peel(
         add_scaled(-multiplier[r], W[r], pull, 0, first)
 
 
-@compiled
+@inner
 def norm_of(values: Array, rows: IntArray) -> float:
     """Norm of some rows' values."""
     square = 0.0
@@ -80,7 +80,7 @@ def norm_of(values: Array, rows: IntArray) -> float:
     return float(np.sqrt(square))
 
 
-@compiled
+@inner
 def outside(
     value: float, lower: float, upper: float, size: float, feasibility: float
 ) -> float:
@@ -94,7 +94,7 @@ def outside(
     return 0.0
 
 
-@compiled
+@inner
 def fault(
     A: Array, lower: Array, upper: Array, w: Work, feasibility: float
 ) -> tuple[int, int]:
@@ -120,7 +120,7 @@ def fault(
     return (_puller(w) if held else -1), 0
 
 
-@compiled
+@inner
 def _puller(w: Work) -> int:
     """The held bound that pulls most in the first level where one does; -1 if none."""
     start, count, order, side, fixed = w.start, w.count, w.order, w.side, w.fixed
@@ -141,7 +141,7 @@ def _puller(w: Work) -> int:
     return -1
 
 
-@compiled
+@inner
 def _against_slack(
     slack: Array,
     bound: Array,
@@ -161,7 +161,7 @@ def _against_slack(
     return row
 
 
-@compiled
+@inner
 def _against_multiplier(w: Work, k: int, floor: float) -> int:
     """A row above level k whose multiplier has the wrong sign."""
     start, count, order, side = w.start, w.count, w.order, w.side

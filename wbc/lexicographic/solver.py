@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import announce, compiled
+from wbc.compiled import announce, compiled, inner
 from wbc.lexicographic.descent import descend
 from wbc.lexicographic.multipliers import fault
 from wbc.lexicographic.sweep import sweep
@@ -113,7 +113,7 @@ def _solve(
     return sweeps + GUESSES if sweeps > 0 else sweeps - GUESSES
 
 
-@compiled
+@inner
 def _prepare(A: Array, lower: Array, upper: Array, w: Work) -> bool:
     """Norms of the rows; sides that the present bounds allow. Is there a guess?"""
     guessed = False

@@ -11,14 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled
+from wbc.compiled import inner
 from wbc.lexicographic.vectors import add_scaled, dot, reflect
 from wbc.lexicographic.work import Work
 
 __all__ = ["sweep"]
 
 
-@compiled
+@inner
 def sweep(
     A: Array, lower: Array, upper: Array, w: Work, tolerance: float, k0: int, k1: int
 ) -> int:
@@ -60,7 +60,7 @@ def sweep(
     return int(taken)
 
 
-@compiled
+@inner
 def _triangular(
     W: Array,
     V: Array,
@@ -85,7 +85,7 @@ def _triangular(
     return int(most)
 
 
-@compiled
+@inner
 def _eliminate(
     W: Array, v: Array, beta: Array, rest: Array, rows: IntArray, rank: int, i: int
 ) -> None:
@@ -106,7 +106,7 @@ def _eliminate(
         rest[rows[q]] = dot(other, other, i + 1, n)
 
 
-@compiled
+@inner
 def _substitute(W: Array, c: Array, slack: Array, rows: IntArray, taken: int) -> None:
     """Meet all rows of the level exactly."""
     for i in range(rows.size):
@@ -116,7 +116,7 @@ def _substitute(W: Array, c: Array, slack: Array, rows: IntArray, taken: int) ->
         slack[r] = 0.0
 
 
-@compiled
+@inner
 def _least_squares(
     W: Array,
     c: Array,
@@ -143,7 +143,7 @@ def _least_squares(
         slack[rows[q]] -= dot(W[rows[q]], c, taken, taken + rank)
 
 
-@compiled
+@inner
 def _column(L: Array, j: int, count: int, rank: int) -> None:
     """One column of the QR, applied to the columns right of it."""
     square = 0.0

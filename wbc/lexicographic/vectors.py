@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import inner
 
 __all__ = ["add_scaled", "dot", "reflect", "reflect_back"]
 
 
-@compiled
+@inner
 def dot(a: Array, b: Array, i: int, n: int) -> float:
     """Sum of a[j] b[j] over i <= j < n."""
     total = 0.0
@@ -17,14 +17,14 @@ def dot(a: Array, b: Array, i: int, n: int) -> float:
     return total
 
 
-@compiled
+@inner
 def add_scaled(factor: float, a: Array, b: Array, i: int, n: int) -> None:
     """b[j] += factor a[j] over i <= j < n."""
     for j in range(i, n):
         b[j] += factor * a[j]
 
 
-@compiled
+@inner
 def reflect(w: Array, V: Array, beta: Array, count: int) -> None:
     """W <- H_count ... H_1 w: from x's coordinates to c's."""
     n = w.size
@@ -32,7 +32,7 @@ def reflect(w: Array, V: Array, beta: Array, count: int) -> None:
         add_scaled(-beta[i] * dot(w, V[i], i, n), V[i], w, i, n)
 
 
-@compiled
+@inner
 def reflect_back(w: Array, V: Array, beta: Array, count: int) -> None:
     """W <- H_1 ... H_count w: from c's coordinates to x's."""
     n = w.size
