@@ -20,7 +20,7 @@ __all__ = ["Lexicographic"]
 
 FEASIBILITY = 1e-10
 """A bound counts as violated beyond this, relative to its row's norm and value."""
-GUESSES = 3
+GUESSES = 8
 """Sweeps that a remembered working set gets before the descent starts from nothing."""
 
 
