@@ -97,6 +97,9 @@ class WristSensor:
                 "between a body without joints and its parent."
             )
         self._dt = model.opt.timestep
+        self._addresses = {
+            part: int(model.sensor(self._part(part)).adr[0]) for part in PARTS
+        }
         self._mass, self._centre, self._inertia = _tool(model, body, self._id)
 
     def reset(self, data: mujoco.MjData) -> None:
@@ -134,10 +137,10 @@ class WristSensor:
         )
         omega = self._data(data, "angular velocity")
         c, I_W = R @ self._centre, R @ self._inertia @ R.T
-        at_centre = a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c))
+        at_centre = a + _cross(alpha, c) + _cross(omega, _cross(omega, c))
         force = self._mass * at_centre
-        spin = I_W @ alpha + np.cross(omega, I_W @ omega)
-        moment = np.cross(c, force) + spin
+        spin = I_W @ alpha + _cross(omega, I_W @ omega)
+        moment = _cross(c, force) + spin
         return np.concatenate(
             [
                 R @ self._data(data, "force") - force,
@@ -146,10 +149,18 @@ class WristSensor:
         )
 
     def _data(self, data: mujoco.MjData, part: str) -> Array:
-        return np.array(data.sensor(self._part(part)).data)
+        begin = self._addresses[part]
+        return data.sensordata[begin : begin + 3]
 
     def _part(self, part: str) -> str:
         return f"{self.name} {part}"
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """A x b; numpy's own takes twenty times as long for two vectors."""
+    a0, a1, a2 = a.tolist()
+    b0, b1, b2 = b.tolist()
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
 
 
 def _both(force: float, torque: float, what: str) -> Array:

@@ -6,13 +6,14 @@ import math
 from typing import NamedTuple, final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sims.cutting.polynomial import Polynomial
 from sims.cutting.timelaw import STILL, Motion, Quintic
 from wbc import InputError
 from wbc.arrays import Array
 
-__all__ = ["R_INIT", "KnifeTarget", "Stroke", "heading", "knife_target"]
+__all__ = ["R_INIT", "KnifeTarget", "Stroke", "heading", "knife_target", "upright"]
 
 R_INIT = np.diag([-1.0, 1.0, -1.0])
 """P0 eq. (12): the knife's z axis points down, its x axis against the world's."""
@@ -108,13 +109,26 @@ def knife_target(
         sideways: what is added to y, such as the local update.
     """
     y, y1, y2, _ = curve.at(x.value)
-    turn = heading(curve, x)
-    c, s = math.cos(turn.value), math.sin(turn.value)
     yd = y1 * x.rate + sideways.rate
     ydd = y1 * x.acceleration + y2 * x.rate * x.rate + sideways.acceleration
+    return upright(
+        (x.value, y + sideways.value, z),
+        (x.rate, yd, 0.0),
+        (x.acceleration, ydd, 0.0),
+        heading(curve, x),
+    )
+
+
+def upright(p: ArrayLike, v: ArrayLike, a: ArrayLike, theta: Motion) -> KnifeTarget:
+    """A vertical knife: position (3,), its derivatives, and the blade's heading.
+
+    R = R_init Rz(-theta), P0 eq. (14): the knife's z points down, so -theta about it
+    is +theta about the world's.
+    """
+    c, s = math.cos(theta.value), math.sin(theta.value)
     return KnifeTarget(
-        np.array([x.value, y + sideways.value, z]),
+        np.array(p),
         np.array([[-c, -s, 0.0], [-s, c, 0.0], [0.0, 0.0, -1.0]]),
-        np.array([x.rate, yd, 0.0, 0.0, 0.0, turn.rate]),
-        np.array([x.acceleration, ydd, 0.0, 0.0, 0.0, turn.acceleration]),
+        np.array([*v, 0.0, 0.0, theta.rate]),
+        np.array([*a, 0.0, 0.0, theta.acceleration]),
     )
