@@ -20,13 +20,14 @@ class Guard:
     Attributes:
         lag: how far the tip may be from its target [m].
         cutting: largest force of the knife [N].
-        deviation: largest deviation of the pull from what is wanted [N].
+        excess: by how much the pull may be above what is wanted [N]. Below it may be:
+            a muscle that comes free takes no force.
         patience: how long any of these may last [s].
     """
 
     lag: float = 0.015
     cutting: float = 150.0
-    deviation: float = 40.0
+    excess: float = 40.0
     patience: float = 0.15
     _since: dict[str, float] = field(default_factory=dict)
 
@@ -49,7 +50,7 @@ class Guard:
             return f"knife blocked at {_place(tip)}: {1e3 * behind:.0f} mm behind"
         if self._lasts("cutting", t, force > self.cutting):
             return f"cutting force out of bounds at {_place(tip)}: {force:.0f} N"
-        if self._lasts("pull", t, abs(pull - due) > self.deviation):
+        if self._lasts("pull", t, pull - due > self.excess):
             return f"pull out of bounds: {pull:.0f} N instead of {due:.0f} N"
         return None
 

@@ -67,7 +67,7 @@ class Job:
             p=tip.xpos.copy(),
             theta=float(np.arctan2(-R[1, 0], -R[0, 0])),
         )
-        self.pull, self._guard = Pull(stacks.pull, plan.pull), Guard()
+        self.pull, self._guard = Pull(stacks.pull, cell.grip, plan.pull), Guard()
         self.stopped: str | None = None
         self.separated_at, self._ended = np.inf, np.inf
         self._t = 0.0
@@ -84,7 +84,7 @@ class Job:
             target = passages.target
         self._t = t
         self._stacks.knife.set_target(*target)
-        self.pull.tick(t)
+        self.pull.tick(t, float(cell.grip[1]))
         if passages.phase == "done":
             self._ended = min(self._ended, t)
         return t < self._ended + AFTER
