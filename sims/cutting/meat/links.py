@@ -39,6 +39,7 @@ class Links:
         stiffness: (N,) [N/m].
         damping: (N,) [N s/m].
         onset: (N,) stretch at which it begins to tear [m].
+        behind: (N,), (N,) thickness of the two muscles there, along y [m].
     """
 
     grid: tuple[int, int]
@@ -47,6 +48,7 @@ class Links:
     stiffness: Array
     damping: Array
     onset: Array
+    behind: tuple[Array, Array]
 
     @classmethod
     def across(cls, sheets: Sheets, animal: Animal, grid: tuple[int, int]) -> Links:
@@ -77,6 +79,7 @@ class Links:
             stiffness,
             DAMPING_TIME * stiffness,
             strength / density,
+            sheets.behind(u, w),
         )
 
     @property

@@ -119,6 +119,15 @@ class Sheets:
         """Points (k, 3) of the seam, at shares u (k,) along it and w (k,) upwards."""
         return _bilinear(self.seam, np.asarray(u, float), np.asarray(w, float))
 
+    def behind(self, u: ArrayLike, w: ArrayLike) -> tuple[Array, Array]:
+        """Thickness (k,), (k,) of the two muscles along y, at the same shares [m]."""
+        u, w = np.asarray(u, float), np.asarray(w, float)
+        held, pulled = (
+            _bilinear(b - a, u, w)[:, 1]
+            for a, b in ((self.fixed, self.seam), (self.seam, self.pulled))
+        )
+        return held, pulled
+
     @property
     def table(self) -> float:
         """Height of the lowest point [m]."""
