@@ -1,0 +1,63 @@
+"""Where the face of a muscle is now, and how deep a knife has left it for the flesh."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, final
+
+from wbc.arrays import Array
+
+__all__ = ["Face", "Wound"]
+
+
+class Wound(NamedTuple):
+    """The knife in a muscle.
+
+    Attributes:
+        inside: how far the tip is behind the muscle's face, along y [m].
+        depth: of the tip below the muscle's top [m].
+        nearest: index of the material point next to it.
+    """
+
+    inside: float
+    depth: float
+    nearest: int
+
+
+@final
+class Face:
+    """The face that a muscle turns to the seam, through the ends of the links.
+
+    Args:
+        grid: (nu, nw) of the points.
+        thickness: (N,) of the muscle behind them, along y [m].
+        sign: +1 if the muscle lies at greater y, -1 if at lesser.
+    """
+
+    def __init__(self, grid: tuple[int, int], thickness: Array, sign: int) -> None:
+        self._grid, self._thickness, self._sign = grid, thickness, sign
+
+    def wound(self, points: Array, tip: Array) -> Wound | None:
+        """How the tip (3,) is in the muscle with face points (N, 3); None if it is not.
+
+        The face is taken as flat between a point and its neighbours.
+        """
+        nu, nw = self._grid
+        away = (points[:, 0] - tip[0]) ** 2 + (points[:, 2] - tip[2]) ** 2
+        nearest = int(away.argmin())
+        i, j = divmod(nearest, nw)
+        low, high = max(i - 1, 0), min(i + 1, nu - 1)
+        down, up = max(j - 1, 0), min(j + 1, nw - 1)
+        along = (points[high * nw + j] - points[low * nw + j]) / (high - low)
+        upward = (points[i * nw + up] - points[i * nw + down]) / (up - down)
+        dx, dz = tip[0] - points[nearest, 0], tip[2] - points[nearest, 2]
+        determinant = along[0] * upward[2] - along[2] * upward[0]
+        a = (dx * upward[2] - dz * upward[0]) / determinant
+        b = (dz * along[0] - dx * along[2]) / determinant
+        if not (-0.5 <= i + a <= nu - 0.5 and j + b <= nw - 0.5):
+            return None
+        face = points[nearest, 1] + a * along[1] + b * upward[1]
+        inside = float(self._sign * (tip[1] - face))
+        if not 0.0 < inside < self._thickness[nearest]:
+            return None
+        top = points[i * nw + nw - 1, 2] + 0.5 * upward[2]
+        return Wound(inside, float(top - tip[2]), nearest)

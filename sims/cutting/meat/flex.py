@@ -1,0 +1,119 @@
+"""A muscle as a trilinear flex of MuJoCo, and material points that move with it."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Final, final
+
+import mujoco
+import numpy as np
+
+from sims.cutting.meat.sheets import Muscle
+from wbc.arrays import Array
+
+__all__ = ["CELLS", "MaterialPoints", "add_muscle", "node_body"]
+
+PREFIX: Final = "meat_"
+"""Of every name of the meat in a scene; the engine wants one."""
+CELLS: Final = (4, 2, 2)
+"""Cells of the grid of nodes along x, y, z: within 2 % of a fine mesh statically."""
+SUPPORT: Final = 4000.0
+"""Vertical stiffness of the table under each lowest node [N/m]."""
+RADIUS: Final = 5e-4
+"""Thickness of the skin, which only shows [m]."""
+
+
+def add_muscle(
+    spec: mujoco.MjSpec,
+    name: str,
+    muscle: Muscle,
+    *,
+    young: float,
+    poisson: float,
+    damping: float,
+    mass: float,
+    rgba: tuple[float, float, float, float],
+    held: bool,
+) -> None:
+    """Add a flex that slides on the table, or one whose lowest-y face is also held.
+
+    The table is no contact: the muscle's weight is taken by `gravcomp`, and springs
+    keep the lowest nodes at their height, both ways and without friction.
+    """
+    nx, _, nz = CELLS
+    pin = f'<pin gridrange="0 0 0 {nx} 0 {nz}"/>' if held else ""
+    child = mujoco.MjSpec.from_string(
+        f'<mujoco><worldbody><flexcomp name="{name}" type="direct" dim="3" '
+        f'dof="trilinear" cellcount="{_text(CELLS)}" mass="{mass}" radius="{RADIUS}" '
+        f'rgba="{_text(rgba)}" point="{_text(muscle.vertices.ravel())}" '
+        f'element="{_text(muscle.elements.ravel())}"><elasticity young="{young}" '
+        f'poisson="{poisson}" damping="{damping}"/><contact selfcollide="none" '
+        f'contype="0" conaffinity="0"/>{pin}</flexcomp></worldbody></mujoco>'
+    )
+    for body in child.bodies[1:]:
+        body.gravcomp = 1.0
+        if body.name.endswith("_0"):
+            body.joints[2].stiffness = [SUPPORT, 0.0, 0.0]
+    spec.attach(child, prefix=PREFIX, frame=spec.worldbody.add_frame())
+
+
+def node_body(name: str, ix: int, iy: int, iz: int) -> str:
+    """Name of the body of a free node of a muscle's grid."""
+    return f"{PREFIX}{name}_{ix}_{iy}_{iz}"
+
+
+def _text(values: object) -> str:
+    return " ".join(repr(float(x)) if isinstance(x, float) else str(x) for x in values)  # type: ignore[attr-defined]
+
+
+@final
+class MaterialPoints:
+    """Points of a muscle: where they are, how fast, and what pushes them.
+
+    Args:
+        model: the scene.
+        name: of the muscle.
+        points: (N, 3) in the undeformed muscle [m].
+    """
+
+    def __init__(self, model: mujoco.MjModel, name: str, points: Array) -> None:
+        flex = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_FLEX, f"{PREFIX}{name}")
+        first, count = model.flex_nodeadr[flex], model.flex_nodenum[flex]
+        bodies = model.flex_nodebodyid[first : first + count]
+        nodes = model.body_pos[bodies] + model.flex_node[first : first + count]
+        free = model.body_dofnum[bodies] == 3
+        start = int(model.body_dofadr[bodies[free]][0])
+        self.block = slice(start, start + 3 * int(free.sum()))
+        start = int(model.jnt_qposadr[model.body_jntadr[bodies[free]]][0])
+        self._qpos = slice(start, start + 3 * int(free.sum()))
+        W = _weights(points, nodes.min(axis=0), nodes.max(axis=0))
+        self.rest = W @ nodes
+        self._W = np.ascontiguousarray(W[:, free])
+        self._Wt = np.ascontiguousarray(self._W.T)
+        self._motion = np.zeros((int(free.sum()), 6))
+
+    def read(self, data: mujoco.MjData) -> tuple[Array, Array]:
+        """Positions and velocities (N, 3), (N, 3) at this instant [m, m/s]."""
+        self._motion[:, :3] = data.qpos[self._qpos].reshape(-1, 3)
+        self._motion[:, 3:] = data.qvel[self.block].reshape(-1, 3)
+        moved = self._W @ self._motion
+        return self.rest + moved[:, :3], moved[:, 3:]
+
+    def push(self, data: mujoco.MjData, forces: Array) -> None:
+        """Let forces (N, 3) [N] act, and no others, until the next call."""
+        data.qfrc_applied[self.block] = (self._Wt @ forces).ravel()
+
+
+def _weights(points: Array, low: Array, high: Array) -> Array:
+    """Trilinear weights (N, nodes) of points in the grid of nodes, z fastest."""
+    cells = np.array(CELLS)
+    place = np.clip((points - low) / (high - low), 0.0, 1.0) * cells
+    cell = np.minimum(place.astype(int), cells - 1)
+    share = place - cell
+    nodes = np.array(CELLS) + 1
+    W = np.zeros((len(points), int(np.prod(nodes))))
+    rows = np.arange(len(points))
+    for corner in itertools.product((0, 1), repeat=3):
+        weight = np.prod(np.where(corner, share, 1.0 - share), axis=1)
+        W[rows, np.ravel_multi_index(tuple((cell + corner).T), tuple(nodes))] += weight
+    return W

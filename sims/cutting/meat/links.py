@@ -1,0 +1,114 @@
+"""The aponeurosis: spring-damper links between the muscles, with damage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from sims.cutting.meat.animal import Animal
+from sims.cutting.meat.sheets import Sheets
+from wbc import InputError
+from wbc.arrays import Array
+
+__all__ = ["Links", "damage"]
+
+DAMPING_TIME: Final = 3e-3
+"""Damping over stiffness of a link [s]."""
+PATCHINESS: Final = 0.25
+"""Largest deviation of stiffness and strength from place to place."""
+FIBRE: Final = 2e-3
+"""Largest offset between the two ends of a link at rest [m]."""
+DUCTILITY: Final = 2.0
+"""Stretch at which a link has torn, over that at which it begins to."""
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class Links:
+    """N links on a grid of nu by nw places of the seam, index u * nw + w.
+
+    A link's force is its stiffness times (a2 - a1 - rest), plus damping.
+
+    Attributes:
+        grid: (nu, nw).
+        ends: (N, 3), (N, 3) material points of the held and the pulled muscle, in the
+            unloaded meat [m]; rest = ends[1] - ends[0].
+        area: (N,) of the seam that each one stands for [m^2].
+        stiffness: (N,) [N/m].
+        damping: (N,) [N s/m].
+        onset: (N,) stretch at which it begins to tear [m].
+        behind: (N,), (N,) thickness of the two muscles there, along y [m].
+    """
+
+    grid: tuple[int, int]
+    ends: tuple[Array, Array]
+    area: Array
+    stiffness: Array
+    damping: Array
+    onset: Array
+    behind: tuple[Array, Array]
+
+    @classmethod
+    def across(cls, sheets: Sheets, animal: Animal, grid: tuple[int, int]) -> Links:
+        """Links over the whole seam.
+
+        Raises:
+            InputError: fewer than 2 by 2.
+        """
+        if min(grid) < 2:
+            raise InputError(f"links must be at least 2 by 2, got {grid}.")
+        u, w = (a.ravel() for a in np.meshgrid(*map(_middles, grid), indexing="ij"))
+        points = sheets.on_seam(u, w)
+        stiffer, stronger, *shifts = (field(u, w) for field in animal.patches)
+        area = _areas(sheets, grid)
+        density = animal.link_stiffness * (1.0 + PATCHINESS * stiffer)
+        strength = animal.strength * (1.0 + PATCHINESS * stronger)
+        # The ends stay on the seam: fibres lean along it, they do not stand off.
+        span = (np.ptp(sheets.seam[..., 0]), np.ptp(sheets.seam[..., 2]))
+        leaning = [
+            np.clip(place + FIBRE * shift / length, 0.0, 1.0)
+            for place, shift, length in zip((u, w), shifts, span, strict=True)
+        ]
+        stiffness = density * area
+        return cls(
+            grid,
+            (points, sheets.on_seam(*leaning)),
+            area,
+            stiffness,
+            DAMPING_TIME * stiffness,
+            strength / density,
+            sheets.behind(u, w),
+        )
+
+    @property
+    def count(self) -> int:
+        """N"""
+        return self.area.size
+
+    @property
+    def rest(self) -> Array:
+        """(N, 3) from the held to the pulled end in the unloaded meat [m]."""
+        return self.ends[1] - self.ends[0]
+
+
+def damage(stretch: Array, onset: Array) -> Array:
+    """How much of its stiffness a link (N,) has lost at a stretch (N,) [m]: 0 to 1.
+
+    Bilinear cohesive law: the force rises to the onset and then falls on a line to 0.
+    Unloading goes straight back to rest: the link recoils with what is left of it.
+    """
+    s = np.maximum(stretch / onset, 1.0)
+    return np.asarray(np.minimum(DUCTILITY * (s - 1.0) / (s * (DUCTILITY - 1.0)), 1.0))
+
+
+def _middles(count: int) -> Array:
+    return (np.arange(count) + 0.5) / count
+
+
+def _areas(sheets: Sheets, grid: tuple[int, int]) -> Array:
+    corners = np.meshgrid(*(np.linspace(0.0, 1.0, n + 1) for n in grid), indexing="ij")
+    p = sheets.on_seam(*(c.ravel() for c in corners)).reshape(grid[0] + 1, -1, 3)
+    across, other = p[1:, 1:] - p[:-1, :-1], p[1:, :-1] - p[:-1, 1:]
+    return np.asarray(0.5 * np.linalg.norm(np.cross(across, other), axis=-1).ravel())

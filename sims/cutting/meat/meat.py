@@ -1,0 +1,176 @@
+"""A piece of meat: its shape, what it is made of, and its place in a scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final, final
+
+import mujoco
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sims.cutting.meat.animal import Animal
+from sims.cutting.meat.flex import CELLS, add_muscle, node_body
+from sims.cutting.meat.links import Links
+from sims.cutting.meat.sheets import Sheets
+from wbc import InputError
+from wbc.arrays import Array, frozen, positive, rotation
+
+__all__ = ["Meat", "Toughness"]
+
+DENSITY: Final = 1060.0
+"""[kg/m^3]"""
+LINKS: Final = (33, 9)
+"""Links along the seam and up: 297."""
+PLACE: Final = (0.52, 0.12)
+"""Where the seam's middle lies (x, y) [m]: within reach of both arms."""
+TABLE: Final = 0.27
+"""Height of the table [m]."""
+HELD: Final = "held"
+PULLED: Final = "pulled"
+COLOURS: Final = {HELD: (0.55, 0.09, 0.10, 1.0), PULLED: (0.64, 0.13, 0.12, 1.0)}
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Toughness:
+    """What it takes to cut (facts of P0's field: Purslow, Atkins, CJME 2022).
+
+    Attributes:
+        seam: fracture toughness of the aponeurosis under a sharp blade [J/m^2].
+        muscle: of the muscle beside it [J/m^2].
+        friction: of the blade's sides [-].
+        pressure: of the tissue on the blade's sides [Pa].
+
+    Raises:
+        InputError: a negative number.
+    """
+
+    seam: float = 300.0
+    muscle: float = 1500.0
+    friction: float = 0.3
+    pressure: float = 2000.0
+
+    def __post_init__(self) -> None:
+        for name in ("seam", "muscle", "friction", "pressure"):
+            positive(getattr(self, name), name, zero=True)
+
+
+@final
+@dataclass(frozen=True, slots=True, eq=False)
+class Meat:
+    """Two muscles, one held at its outer face, joined along a seam.
+
+    Attributes:
+        sheets: the shape.
+        links: the aponeurosis.
+        young: modulus of the muscles [Pa].
+        poisson: Poisson's ratio.
+        damping: Rayleigh damping of the muscles [s].
+        toughness: what it takes to cut.
+    """
+
+    sheets: Sheets
+    links: Links
+    young: float
+    poisson: float = 0.3
+    damping: float = 0.01
+    toughness: Toughness = field(default_factory=Toughness)
+
+    def __post_init__(self) -> None:
+        positive(self.young, "young")
+        positive(self.damping, "damping", zero=True)
+        if not 0.0 <= self.poisson < 0.5:
+            raise InputError(f"poisson must be in 0 .. 0.5, got {self.poisson}.")
+
+    @classmethod
+    def generate(
+        cls,
+        seed: int = 0,
+        *,
+        links: tuple[int, int] = LINKS,
+        place: tuple[float, float] = PLACE,
+        table: float = TABLE,
+        toughness: Toughness | None = None,
+    ) -> Meat:
+        """The shoulder of the animal that a seed stands for.
+
+        Args:
+            seed: decides shape, stiffness, link strength and fibre offsets.
+            links: number of links along the seam and up.
+            place: (x, y) of the seam's middle [m].
+            table: height of the table [m].
+            toughness: what it takes to cut.
+
+        Raises:
+            InputError: fewer than 2 by 2 links.
+        """
+        animal = Animal.draw(seed)
+        sheets = animal.sheets(frozen(place, (2,), "place"), table)
+        return cls(
+            sheets,
+            Links.across(sheets, animal, links),
+            animal.young,
+            toughness=toughness or Toughness(),
+        )
+
+    def add_to(self, spec: mujoco.MjSpec) -> None:
+        """Add the muscles to a scene, and choose the integrator that suits them.
+
+        Keyframes of the scene go: they know nothing of the muscles' coordinates.
+        """
+        for name, muscle in zip((HELD, PULLED), self.sheets.muscles(), strict=True):
+            add_muscle(
+                spec,
+                name,
+                muscle,
+                young=self.young,
+                poisson=self.poisson,
+                damping=self.damping,
+                mass=DENSITY * muscle.volume,
+                rgba=COLOURS[name],
+                held=name == HELD,
+            )
+        for key in list(spec.keys):
+            spec.delete(key)
+        spec.option.integrator = mujoco.mjtIntegrator.mjINT_DISCRETE
+        spec.option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+
+    @property
+    def grip(self) -> Array:
+        """Where the pulled muscle is to be held (3,): middle of its outer face [m]."""
+        low, high = self.sheets.muscles()[1].box
+        return np.array([0.5 * (low[0] + high[0]), high[1], 0.5 * (low[2] + high[2])])
+
+    def attach(
+        self, spec: mujoco.MjSpec, body: str, p: ArrayLike, R: ArrayLike
+    ) -> None:
+        """Fasten the pulled muscle's outer face to a tool: nine nodes, rigidly.
+
+        Args:
+            spec: the scene, with the meat in it.
+            body: name of the tool's body.
+            p: (3,) where that body will be when the simulation starts [m].
+            R: (3, 3) its orientation then.
+
+        Raises:
+            InputError: there is no such body, or no pose.
+        """
+        tool = spec.body(body)
+        if tool is None:
+            raise InputError(
+                f"there is no body '{body}' in the scene to hold the meat."
+            )
+        p, R = frozen(p, (3,), "p"), rotation(R, "R")
+        nx, ny, nz = CELLS
+        for ix in range(1, nx):
+            for iz in range(nz + 1):
+                name = node_body(PULLED, ix, ny, iz)
+                node = spec.body(name)
+                node.add_site(name=f"{name}_held")
+                tool.add_site(name=f"{name}_tool", pos=R.T @ (node.pos - p), group=4)
+                hold = spec.add_equality(
+                    type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE
+                )
+                hold.name1, hold.name2 = f"{name}_tool", f"{name}_held"
+                hold.solref = [0.005, 1.0]
