@@ -9,7 +9,7 @@ from wbc import UnknownName
 
 __all__ = ["cell_names", "find_demo"]
 
-MODULES = {"welding": "sims.welding.demo"}
+MODULES = {"cutting": "sims.cutting.demo", "welding": "sims.welding.demo"}
 
 
 def cell_names() -> list[str]:

@@ -41,6 +41,7 @@ class Job:
         experiment: how the guide line is updated.
 
     Attributes:
+        experiment: how the guide line is updated.
         passages: what the knife does.
         pull: what the puller does.
         stopped: why the job ended early, None if it did not.
@@ -67,6 +68,7 @@ class Job:
             p=tip.xpos.copy(),
             theta=float(np.arctan2(-R[1, 0], -R[0, 0])),
         )
+        self.experiment = experiment
         self.pull, self._guard = Pull(stacks.pull, cell.grip, plan.pull), Guard()
         self.stopped: str | None = None
         self.separated_at, self._ended = np.inf, np.inf
@@ -95,6 +97,7 @@ class Job:
         if self.separated_at == np.inf and cell.tissue.separated:
             self.separated_at = t
             self.pull.release(t, LETTING_GO)
+            self.passages.finish()
         if self.stopped is not None:
             return
         felt = cell.wrenches

@@ -76,6 +76,12 @@ class Plan:
     pull: float = 100.0
     order: int = 2
 
+    @property
+    def duration(self) -> float:
+        """Of the whole, if nothing holds the knife up [s]."""
+        passage = self.travel + self.stroke + 2.0 * self.lift
+        return self.settling + passage * len(self.depths) + 1.0
+
     def __post_init__(self) -> None:
         """Check everything once."""
         for name in ("stroke", "travel", "lift", "settling", "overrun", "pull"):

@@ -21,13 +21,16 @@ class Run:
     """What a cut leaves behind.
 
     Attributes:
+        cell: as it stands at the end.
         logs: one a controller.
         record: what the meat did.
         job: the job, over.
     """
 
-    def __init__(self, logs: list[Log], record: Record, job: Job) -> None:
-        self.logs, self.record, self.job = logs, record, job
+    def __init__(
+        self, cell: CuttingCell, logs: list[Log], record: Record, job: Job
+    ) -> None:
+        self.cell, self.logs, self.record, self.job = cell, logs, record, job
 
 
 def run_job(
@@ -82,7 +85,7 @@ def run_job(
     for log in logs:
         log.spent = spent
     record.finish()
-    return Run([log.trimmed() for log in logs], record, job)
+    return Run(cell, [log.trimmed() for log in logs], record, job)
 
 
 def _certify(

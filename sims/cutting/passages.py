@@ -23,6 +23,8 @@ __all__ = ["Passages", "Phase"]
 Phase: TypeAlias = Literal["wait", "over", "down", "stroke", "up", "done"]
 SIGHT_LOST = 3.0
 """The line counts as lost when so many frames in a row are missing."""
+STANDING = 0.02
+"""Share of its pace at which a knife counts as standing."""
 
 
 @final
@@ -47,6 +49,7 @@ class Passages:
         phase: what it does.
         index: of the passage, from 0.
         lines: the curve of every passage so far.
+        ended: when the stroke of every passage was over [s].
         blind: whether it waits for frames.
         target: what it wants now.
     """
@@ -66,7 +69,9 @@ class Passages:
         self._patience, self._noise = delay + SIGHT_LOST * period, noise
         self.phase: Phase = "wait"
         self.index, self.blind = 0, False
+        self._last, self._closing = len(plan.depths) - 1, False
         self.lines: list[Polynomial] = []
+        self.ended: list[float] = []
         self.target = upright(p, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), Motion(theta, 0, 0))
         self._theta, self._clock = theta, Clock()
         self._live = LiveGuide(noise)
@@ -79,7 +84,7 @@ class Passages:
     @property
     def completed(self) -> int:
         """Passages whose stroke is over."""
-        return self.index + (self.phase in ("up", "done"))
+        return len(self.ended)
 
     def tick(self, t: float, dt: float, frame: Frame | None, y: float) -> KnifeTarget:
         """The target at time t [s].
@@ -90,6 +95,7 @@ class Passages:
             frame: the newest from the camera.
             y: of the knife's tip [m].
         """
+        self._t = t
         if self.phase == "wait" and t >= self.plan.settling and frame is not None:
             self._set_off(frame)
         if self.phase == "stroke":
@@ -97,6 +103,12 @@ class Passages:
         elif self.phase in ("over", "down", "up"):
             self._go(dt, frame)
         return self.target
+
+    def finish(self) -> None:
+        """Nothing is left to cut: slow down, then up, and done."""
+        self._last, self._closing = self.index, True
+        if self.phase in ("over", "down"):
+            self.stop()
 
     def stop(self) -> None:
         """Stay where the target is now."""
@@ -142,7 +154,7 @@ class Passages:
             self._clock.restart()
             self.correction.restart()
             self._live.forget()
-        elif self.index + 1 == len(self.plan.depths):
+        elif self.index == self._last:
             self.phase = "done"
         elif frame is not None:
             self.index += 1
@@ -153,15 +165,21 @@ class Passages:
         if frame is not None:
             self._live.see(frame, x_now, self.depth)
         self.blind = self._live.age(t) > self._patience
-        self._clock.tick(dt, 0.0 if self.blind else 1.0)
+        self._clock.tick(dt, 0.0 if self.blind or self._closing else 1.0)
         x = self._clock.slowed(self._stroke.at(self._clock.time))
         curve = self._stroke.curve
         bend = curve.at(x.value)
         planned = Motion(bend.y, bend.y1 * x.rate, 0.0)
-        seen = self._live.at(x.value, t)
+        seen = None if self._closing else self._live.at(x.value, t)
         side = self.correction.tick(dt, seen, planned, y, x.rate)
         self.target = knife_target(curve, x, self.depth, side)
-        if self._clock.time >= self._stroke.duration:
-            self._theta = heading(curve, Motion(x.value, 0.0, 0.0)).value
-            up = np.array([*self.target.p[:2], self.plan.height])
-            self._begin("up", up, self._theta, self.plan.lift)
+        stands = self._closing and self._clock.pace < STANDING
+        if stands or self._clock.time >= self._stroke.duration:
+            self._rise()
+
+    def _rise(self) -> None:
+        self.ended.append(self._t)
+        x = float(self.target.p[0])
+        self._theta = heading(self._stroke.curve, Motion(x, 0.0, 0.0)).value
+        up = np.array([*self.target.p[:2], self.plan.height])
+        self._begin("up", up, self._theta, self.plan.lift)
