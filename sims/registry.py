@@ -9,7 +9,11 @@ from wbc import UnknownName
 
 __all__ = ["cell_names", "find_demo"]
 
-MODULES = {"cutting": "sims.cutting.demo", "welding": "sims.welding.demo"}
+MODULES = {
+    "cutting": "sims.cutting.demo",
+    "welding": "sims.welding.demo",
+    "constraints": "sims.constraints.demo",
+}
 
 
 def cell_names() -> list[str]:

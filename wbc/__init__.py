@@ -21,7 +21,7 @@ from wbc.frames import FrameState
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
 from wbc.kernel import Kernel
-from wbc.law import PD, Damper, Law
+from wbc.law import PD, Damper, Law, SaturatedPD
 from wbc.nullspace import NullSpace
 from wbc.qp import backends
 from wbc.resolver import Resolver, Status
@@ -55,6 +55,7 @@ __all__ = [
     "Resolver",
     "Robot",
     "Rows",
+    "SaturatedPD",
     "Solution",
     "SolverError",
     "StaleError",
