@@ -97,8 +97,8 @@ def _curves(run: Run, k: int) -> dict[str, Array]:
 def _passages(run: Run) -> tuple[str, str]:
     number = "7" if run.job.experiment == "initial" else "8"
     caption = (
-        "Guide line before the cut, trajectory interpolated at the start of the passage, "
-        f"guide line where the knife is, and the knife (P0, Fig. {number})."
+        "Guide line before the cut, trajectory interpolated at the start of the "
+        f"passage, guide line where the knife is, and the knife (P0, Fig. {number})."
     )
     return caption, _panels(run)
 

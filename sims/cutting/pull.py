@@ -18,8 +18,9 @@ class Pull:
     """Sets the desired force h_d of P0 eq. (20) along +y, robot on meat.
 
     The desired velocity follows the measured one slowly: the damper calms what is
-    fast, and costs no force where the valley opens steadily. The opening needs no command of its own: as links are cut, less holds the muscle
-    back, and the same force opens the valley further (P0 section III-C).
+    fast, and costs no force where the valley opens steadily. The opening needs no
+    command of its own: as links are cut, less holds the muscle back, and the same
+    force opens the valley further (P0 section III-C).
 
     Args:
         task: the impedance of the pulling arm.

@@ -6,17 +6,21 @@ from typing import Final
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 
 from sims.cutting.layout import CUTTER, GRIP, PULLER, TABLE, robot_of
 from sims.cutting.meat import Meat
 from sims.scene import add_box, add_room
 
-__all__ = ["PLACE", "UPRIGHT", "scene"]
+__all__ = ["LEANING", "PLACE", "UPRIGHT", "scene"]
 
 PLACE: Final = (0.475, 0.14)
 """Middle of the seam above the table (x, y) [m]: both arms reach all of it."""
 UPRIGHT: Final = np.diag([-1.0, 1.0, -1.0])
-"""Orientation of knife and bracket with the tool down, P0 eq. (12)."""
+"""Orientation of the knife, tool down, P0 eq. (12)."""
+LEAN: Final = np.radians(30.0)
+LEANING: Final = np.array(pin.exp3(np.array([-LEAN, 0.0, 0.0]))) @ UPRIGHT
+"""Orientation of the bracket: its wrist keeps clear of the other arm's."""
 STEEL: Final = (0.55, 0.58, 0.62, 1.0)
 
 
@@ -33,5 +37,5 @@ def scene(meat: Meat) -> mujoco.MjSpec:
     offset = np.array(spec.site(GRIP).pos)
     # "discrete" costs twice as much; Euler gives the same digits up to 70 kPa.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
-    meat.attach(spec, f"{PULLER}_bracket", meat.grip - UPRIGHT @ offset, UPRIGHT)
+    meat.attach(spec, f"{PULLER}_bracket", meat.grip - LEANING @ offset, LEANING)
     return spec

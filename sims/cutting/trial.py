@@ -16,7 +16,7 @@ from sims.cutting.job import Job, check_plan
 from sims.cutting.layout import CUTTER, GRIP, PULLER, TIP, Plan, robot_of
 from sims.cutting.loop import Run, run_job
 from sims.cutting.meat import Meat, Tissue
-from sims.cutting.scene import PLACE, UPRIGHT, scene
+from sims.cutting.scene import LEANING, PLACE, UPRIGHT, scene
 from sims.cutting.stacks import posture_at, stacks
 from sims.mismatch import Mismatch
 from sims.resolvers import make_resolver
@@ -116,5 +116,5 @@ class Trial:
         above[2] = self.plan.height
         return {
             CUTTER: posture_at(robot_of(CUTTER), TIP, above, UPRIGHT),
-            PULLER: posture_at(robot_of(PULLER), GRIP, self.meat.grip, UPRIGHT),
+            PULLER: posture_at(robot_of(PULLER), GRIP, self.meat.grip, LEANING),
         }
