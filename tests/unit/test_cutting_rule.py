@@ -14,7 +14,7 @@ LINK = (np.array([[0.50, 0.10, 0.32]]), np.array([[0.50, 0.11, 0.33]]))
 
 
 def cuts(before, after, ends=LINK) -> bool:
-    return cut(np.array(before), np.array(after), ends, WIDTH).size > 0
+    return cut(np.array(before), np.array(after), *ends, WIDTH).size > 0
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_rule_agrees_with_a_dense_sampling_of_the_way():
     for _ in range(8):
         before, after = rng.uniform(-0.012, 0.012, (2, 3))
         hit = np.zeros(400, dtype=bool)
-        hit[cut(before, after, ends, WIDTH)] = True
+        hit[cut(before, after, *ends, WIDTH)] = True
         way = before + np.linspace(0, 1, 2001)[:, None] * (after - before)
         expected, margin = sampled(way, ends)
         assert (hit == expected)[margin].all()
@@ -79,7 +79,13 @@ def sampled(way, ends):
 
 
 def test_distance_of_segments_is_that_of_their_nearest_points():
-    p, q = np.array([[0.0, 0], [0, 0], [0, 0]]), np.array([[1.0, 0], [1, 0], [1, 0]])
-    a = np.array([[0.5, -1], [2, 1], [0.2, 0.3]])
-    b = np.array([[0.5, 1], [2, -1], [0.8, 0.1]])
-    assert_allclose(segment_distance(p, q, a, b), [0, 1, 0.1], atol=ROUND_OFF)
+    unit = (0.0, 0.0, 1.0, 0.0)
+    for other, distance in (
+        ((0.5, -1.0, 0.5, 1.0), 0.0),  # they cross
+        ((2.0, 1.0, 2.0, -1.0), 1.0),
+        ((0.2, 0.3, 0.8, 0.1), 0.1),
+        ((0.3, 0.2, 0.3, 0.2), 0.2),  # a point
+        ((0.4, 0.0, 3.0, 0.0), 0.0),  # on one line
+    ):
+        assert_allclose(segment_distance(*unit, *other), distance, atol=ROUND_OFF)
+        assert_allclose(segment_distance(*other, *unit), distance, atol=ROUND_OFF)

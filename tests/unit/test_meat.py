@@ -107,9 +107,8 @@ def test_links_pull_the_two_muscles_with_opposite_forces():
 
 
 def test_damage_begins_at_the_onset_ends_at_twice_it_and_carries_no_more_than_that():
-    onset = np.ones(5)
     stretch = np.array([0.5, 1.0, 1.5, 2.0, 3.0])
-    left = 1.0 - damage(stretch, onset)
+    left = np.array([1.0 - damage(s, 1.0) for s in stretch])
     assert_allclose(left * stretch, [0.5, 1.0, 0.5, 0.0, 0.0], atol=ROUND_OFF)
 
 

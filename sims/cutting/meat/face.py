@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple, final
 
+import numpy as np
+
 from wbc.arrays import Array
+from wbc.compiled import compiled
 
 __all__ = ["Face", "Wound"]
 
@@ -41,23 +44,40 @@ class Face:
 
         The face is taken as flat between a point and its neighbours.
         """
-        nu, nw = self._grid
-        away = (points[:, 0] - tip[0]) ** 2 + (points[:, 2] - tip[2]) ** 2
-        nearest = int(away.argmin())
-        i, j = divmod(nearest, nw)
-        low, high = max(i - 1, 0), min(i + 1, nu - 1)
-        down, up = max(j - 1, 0), min(j + 1, nw - 1)
-        along = (points[high * nw + j] - points[low * nw + j]) / (high - low)
-        upward = (points[i * nw + up] - points[i * nw + down]) / (up - down)
-        dx, dz = tip[0] - points[nearest, 0], tip[2] - points[nearest, 2]
-        determinant = along[0] * upward[2] - along[2] * upward[0]
-        a = (dx * upward[2] - dz * upward[0]) / determinant
-        b = (dz * along[0] - dx * along[2]) / determinant
-        if not (-0.5 <= i + a <= nu - 0.5 and j + b <= nw - 0.5):
+        within, beyond, depth, nearest = below(points, self._grid, tip)
+        inside = self._sign * beyond
+        if not (within and 0.0 < inside < self._thickness[nearest]):
             return None
-        face = points[nearest, 1] + a * along[1] + b * upward[1]
-        inside = float(self._sign * (tip[1] - face))
-        if not 0.0 < inside < self._thickness[nearest]:
-            return None
-        top = points[i * nw + nw - 1, 2] + 0.5 * upward[2]
-        return Wound(inside, float(top - tip[2]), nearest)
+        return Wound(inside, depth, nearest)
+
+
+@compiled
+def below(
+    points: Array, grid: tuple[int, int], tip: Array
+) -> tuple[bool, float, float, int]:
+    """Place of a tip (3,) on a face through points (N, 3) in a grid.
+
+    Returns:
+        Whether it is between the ends and below the top of the face, how far it is
+        beyond the face along y [m], its depth below the top [m], and the index of the
+        point next to it.
+    """
+    nu, nw = grid
+    nearest, least = 0, np.inf
+    for k in range(points.shape[0]):
+        away = (points[k, 0] - tip[0]) ** 2 + (points[k, 2] - tip[2]) ** 2
+        if away < least:
+            nearest, least = k, away
+    i, j = nearest // nw, nearest % nw
+    low, high = max(i - 1, 0), min(i + 1, nu - 1)
+    down, up = max(j - 1, 0), min(j + 1, nw - 1)
+    along = (points[high * nw + j] - points[low * nw + j]) / (high - low)
+    upward = (points[i * nw + up] - points[i * nw + down]) / (up - down)
+    dx, dz = tip[0] - points[nearest, 0], tip[2] - points[nearest, 2]
+    determinant = along[0] * upward[2] - along[2] * upward[0]
+    a = (dx * upward[2] - dz * upward[0]) / determinant
+    b = (dz * along[0] - dx * along[2]) / determinant
+    within = -0.5 <= i + a <= nu - 0.5 and j + b <= nw - 0.5
+    face = points[nearest, 1] + a * along[1] + b * upward[1]
+    top = points[i * nw + nw - 1, 2] + 0.5 * upward[2]
+    return within, tip[1] - face, top - tip[2], nearest

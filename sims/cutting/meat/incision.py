@@ -11,11 +11,14 @@ from sims.cutting.meat.face import Face, Wound
 from sims.cutting.meat.knife import CHORD, resistance
 from sims.cutting.meat.meat import Meat, Toughness
 from wbc.arrays import Array, BoolArray, IntArray
+from wbc.compiled import compiled
 
 __all__ = ["Incision", "Reaction"]
 
 GRADUAL: Final = 1e-3
 """Way into a muscle over which its resistance grows to all of it [m]."""
+CLEARANCE: Final = 0.03
+"""Height above the unloaded meat from which on a knife is surely out of it [m]."""
 NOTHING: Final = np.zeros(0, dtype=np.int_)
 
 
@@ -62,6 +65,8 @@ class Incision:
         links, sheets = meat.links, meat.sheets
         self._toughness, self._area, self._width = meat.toughness, links.area, width
         self._pitch = float(np.ptp(sheets.seam[..., 0])) / links.grid[0]
+        self._top = sheets.top + CLEARANCE
+        self._reach = self._pitch + width, width
         self._faces = tuple(
             Face(links.grid, thickness, sign)
             for thickness, sign in zip(links.behind, (-1, 1), strict=True)
@@ -89,9 +94,9 @@ class Incision:
             motion: (3,) of the tip in this step [m].
         """
         way = float(np.hypot(motion[0], motion[1]))
-        if tip[2] > ends[0][:, 2].max() + self._pitch:
+        if tip[2] > self._top:
             return Reaction(0.0, 0.0, NOTHING, NOTHING)
-        met = self._ahead(ends, alive, tip, motion[:2] / way) if way > 0 else NOTHING
+        met = ahead(*ends, alive, tip, motion, self._reach)
         work = self._toughness.seam * self._area[met] - energy[met]
         tearing = float(np.maximum(work, 0.0).sum()) / self._pitch
         depth = float(self._area[met].sum()) / self._pitch
@@ -109,15 +114,42 @@ class Incision:
         points[side] = np.array([wound.nearest])
         return Reaction(tearing, wound.depth, *points)
 
-    def _ahead(
-        self, ends: tuple[Array, Array], alive: BoolArray, tip: Array, t: Array
-    ) -> IntArray:
-        """Links that a tip moving along t (2,) will cut within the next pitch."""
-        found = np.flatnonzero(alive & (np.minimum(*(a[:, 2] for a in ends)) >= tip[2]))
-        offsets = [a[found, :2] - tip[:2] for a in ends]
-        along = 0.5 * (offsets[0] + offsets[1]) @ t
-        beside = [o @ [-t[1], t[0]] for o in offsets]
-        near = (along > 0.0) & (along <= self._pitch + self._width)
-        near &= np.minimum(*beside) <= self._width
-        near &= np.maximum(*beside) >= -self._width
-        return found[near]
+
+@compiled
+def ahead(
+    a1: Array,
+    a2: Array,
+    alive: BoolArray,
+    tip: Array,
+    motion: Array,
+    reach: tuple[float, float],
+) -> IntArray:
+    """Indices of the links that a tip is about to cut.
+
+    Args:
+        a1: (N, 3) one end of the links [m].
+        a2: (N, 3) the other end [m].
+        alive: (N,) which of them hold.
+        tip: (3,) of the knife [m].
+        motion: (3,) of the tip; only its direction in the xy plane counts.
+        reach: how far to look along the motion, and to either side of it [m].
+    """
+    found = np.empty(alive.size, dtype=np.int_)
+    count = 0
+    way = np.hypot(motion[0], motion[1])
+    if way == 0.0:
+        return found[:0]
+    tx, ty = motion[0] / way, motion[1] / way
+    for i in range(alive.size):
+        if not alive[i] or min(a1[i, 2], a2[i, 2]) < tip[2]:
+            continue
+        x1, y1 = a1[i, 0] - tip[0], a1[i, 1] - tip[1]
+        x2, y2 = a2[i, 0] - tip[0], a2[i, 1] - tip[1]
+        along = 0.5 * ((x1 + x2) * tx + (y1 + y2) * ty)
+        if not 0.0 < along <= reach[0]:
+            continue
+        beside1, beside2 = y1 * tx - x1 * ty, y2 * tx - x2 * ty
+        if min(beside1, beside2) <= reach[1] and max(beside1, beside2) >= -reach[1]:
+            found[count] = i
+            count += 1
+    return found[:count]

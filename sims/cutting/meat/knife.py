@@ -9,6 +9,7 @@ import numpy as np
 
 from wbc import UnknownName
 from wbc.arrays import Array
+from wbc.linalg import cross
 
 __all__ = ["Knife", "resistance"]
 
@@ -72,4 +73,4 @@ class Knife:
         """
         arm = point - data.xipos[self._body]
         data.xfrc_applied[self._body, :3] = force
-        data.xfrc_applied[self._body, 3:] = np.cross(arm, force)
+        data.xfrc_applied[self._body, 3:] = cross(arm, force)

@@ -10,9 +10,10 @@ import numpy as np
 from sims.cutting.meat.animal import Animal
 from sims.cutting.meat.sheets import Sheets
 from wbc import InputError
-from wbc.arrays import Array
+from wbc.arrays import Array, BoolArray
+from wbc.compiled import compiled
 
-__all__ = ["Links", "damage"]
+__all__ = ["Links", "damage", "pull"]
 
 DAMPING_TIME: Final = 3e-3
 """Damping over stiffness of a link [s]."""
@@ -93,14 +94,57 @@ class Links:
         return self.ends[1] - self.ends[0]
 
 
-def damage(stretch: Array, onset: Array) -> Array:
-    """How much of its stiffness a link (N,) has lost at a stretch (N,) [m]: 0 to 1.
+@compiled
+def damage(stretch: float, onset: float) -> float:
+    """How much of its stiffness a link has lost at a stretch [m]: 0 to 1.
 
     Bilinear cohesive law: the force rises to the onset and then falls on a line to 0.
     Unloading goes straight back to rest: the link recoils with what is left of it.
     """
-    s = np.maximum(stretch / onset, 1.0)
-    return np.asarray(np.minimum(DUCTILITY * (s - 1.0) / (s * (DUCTILITY - 1.0)), 1.0))
+    s = max(stretch / onset, 1.0)
+    return min(DUCTILITY * (s - 1.0) / (s * (DUCTILITY - 1.0)), 1.0)
+
+
+@compiled
+def pull(
+    x: tuple[Array, Array],
+    v: tuple[Array, Array],
+    rest: Array,
+    properties: tuple[Array, Array, Array],
+    suffered: Array,
+    alive: BoolArray,
+    forces: tuple[Array, Array],
+    energy: Array,
+) -> None:
+    """Forces of the links on the two muscles, after the damage of this instant.
+
+    Args:
+        x: (N, 3), (N, 3) where the ends are [m].
+        v: (N, 3), (N, 3) their velocities [m/s].
+        rest: (N, 3) from end to end at rest [m].
+        properties: (N,) stiffness [N/m], damping [N s/m] and onset [m].
+        suffered: (N,) damage so far; grows.
+        alive: (N,) which links hold; those that tear now no longer do.
+        forces: (N, 3), (N, 3) on the held and on the pulled end [N]; written.
+        energy: (N,) stored in each link [J]; written.
+    """
+    (x1, x2), (v1, v2), (on_held, on_pulled) = x, v, forces
+    stiffness, damping, onset = properties
+    for i in range(alive.size):
+        r0 = x2[i, 0] - x1[i, 0] - rest[i, 0]
+        r1 = x2[i, 1] - x1[i, 1] - rest[i, 1]
+        r2 = x2[i, 2] - x1[i, 2] - rest[i, 2]
+        stretch2 = r0 * r0 + r1 * r1 + r2 * r2
+        suffered[i] = max(suffered[i], damage(np.sqrt(stretch2), onset[i]))
+        alive[i] = alive[i] and suffered[i] < 1.0
+        left = 1.0 - suffered[i] if alive[i] else 0.0
+        k, c = left * stiffness[i], left * damping[i]
+        on_held[i, 0] = k * r0 + c * (v2[i, 0] - v1[i, 0])
+        on_held[i, 1] = k * r1 + c * (v2[i, 1] - v1[i, 1])
+        on_held[i, 2] = k * r2 + c * (v2[i, 2] - v1[i, 2])
+        for j in range(3):
+            on_pulled[i, j] = -on_held[i, j]
+        energy[i] = 0.5 * k * stretch2
 
 
 def _middles(count: int) -> Array:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array, IntArray
+from wbc.compiled import compiled, inner
 
 __all__ = ["cut", "segment_distance"]
 
 
-def cut(
-    before: Array, after: Array, ends: tuple[Array, Array], width: float
-) -> IntArray:
+@compiled
+def cut(before: Array, after: Array, a1: Array, a2: Array, width: float) -> IntArray:
     """Indices of the links that the knife's tip cuts on its way between two instants.
 
     A link a1 a2 is cut where, somewhere on the way, the tip is below it,
@@ -23,65 +23,69 @@ def cut(
     Args:
         before: (3,) where the tip was [m].
         after: (3,) where it is [m].
-        ends: (N, 3), (N, 3) of the links [m].
+        a1: (N, 3) one end of the links [m].
+        a2: (N, 3) the other end [m].
         width: d of P0 eq. 6 [m].
     """
-    a1, a2 = ends
-    lowest = np.minimum(a1[:, 2], a2[:, 2])
-    box_low, box_high = np.minimum(before, after), np.maximum(before, after)
-    near = lowest >= box_low[2]
-    for axis in (0, 1):
-        near &= np.maximum(a1[:, axis], a2[:, axis]) >= box_low[axis] - width
-        near &= np.minimum(a1[:, axis], a2[:, axis]) <= box_high[axis] + width
-    found = np.flatnonzero(near)
-    if found.size == 0:
-        return found
-    p, q = _below(before, after, lowest[found])
-    distance = segment_distance(p, q, a1[found, :2], a2[found, :2])
-    return found[distance <= width]
-
-
-def _below(before: Array, after: Array, heights: Array) -> tuple[Array, Array]:
-    """Ends (k, 2) of the part of the way that is at or below heights (k,)."""
+    found = np.empty(a1.shape[0], dtype=np.int_)
+    count = 0
+    low = min(before[2], after[2])
     rise = after[2] - before[2]
-    crossing = np.full(heights.size, 0.0 if rise <= 0.0 else 1.0)
-    if rise != 0.0:
-        crossing = np.clip((heights - before[2]) / rise, 0.0, 1.0)
-    way = (after - before)[:2]
-    first, last = (
-        before[:2] + 0.0 * crossing[:, None],
-        after[:2] + 0.0 * crossing[:, None],
+    for i in range(a1.shape[0]):
+        height = min(a1[i, 2], a2[i, 2])
+        if height < low:
+            continue
+        # shares of the way between which the tip is at or below the link
+        first, last = 0.0, 1.0
+        if rise < 0.0:
+            first = max((height - before[2]) / rise, 0.0)
+        elif rise > 0.0:
+            last = min((height - before[2]) / rise, 1.0)
+        px = before[0] + first * (after[0] - before[0])
+        py = before[1] + first * (after[1] - before[1])
+        qx = before[0] + last * (after[0] - before[0])
+        qy = before[1] + last * (after[1] - before[1])
+        distance = segment_distance(
+            px, py, qx, qy, a1[i, 0], a1[i, 1], a2[i, 0], a2[i, 1]
+        )
+        if distance <= width:
+            found[count] = i
+            count += 1
+    return found[:count]
+
+
+@compiled
+def segment_distance(
+    px: float, py: float, qx: float, qy: float,
+    ax: float, ay: float, bx: float, by: float,
+) -> float:  # fmt: skip
+    """Distance between the segments p q and a b in the plane."""
+    if (
+        _side(px, py, qx, qy, ax, ay) * _side(px, py, qx, qy, bx, by) < 0.0
+        and _side(ax, ay, bx, by, px, py) * _side(ax, ay, bx, by, qx, qy) < 0.0
+    ):
+        return 0.0
+    return min(
+        _to_segment(px, py, ax, ay, bx, by),
+        _to_segment(qx, qy, ax, ay, bx, by),
+        _to_segment(ax, ay, px, py, qx, qy),
+        _to_segment(bx, by, px, py, qx, qy),
     )
-    turn = before[:2] + crossing[:, None] * way
-    return (turn, last) if rise <= 0.0 else (first, turn)
 
 
-def segment_distance(p: Array, q: Array, a: Array, b: Array) -> Array:
-    """Distances (k,) between segments p q and a b, all ends (k, 2)."""
-    ends = np.stack(
-        [
-            _to_segment(p, a, b),
-            _to_segment(q, a, b),
-            _to_segment(a, p, q),
-            _to_segment(b, p, q),
-        ]
-    )
-    apart = (_side(p, q, a) * _side(p, q, b) >= 0) | (
-        _side(a, b, p) * _side(a, b, q) >= 0
-    )
-    return np.where(apart, ends.min(axis=0), 0.0)
+@inner
+def _to_segment(
+    x: float, y: float, ax: float, ay: float, bx: float, by: float
+) -> float:
+    dx, dy = bx - ax, by - ay
+    length2 = dx * dx + dy * dy
+    t = 0.0
+    if length2 > 0.0:
+        t = min(max(((x - ax) * dx + (y - ay) * dy) / length2, 0.0), 1.0)
+    return float(np.hypot(x - ax - t * dx, y - ay - t * dy))
 
 
-def _to_segment(x: Array, a: Array, b: Array) -> Array:
-    along = b - a
-    length2 = np.einsum("ij,ij->i", along, along)
-    t = np.einsum("ij,ij->i", x - a, along) / np.where(length2 > 0.0, length2, 1.0)
-    nearest = a + np.clip(t, 0.0, 1.0)[:, None] * along
-    return np.asarray(np.hypot(*(x - nearest).T))
-
-
-def _side(a: Array, b: Array, x: Array) -> Array:
-    """Twice the signed area of the triangles a b x."""
-    return (b[:, 0] - a[:, 0]) * (x[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (
-        x[:, 0] - a[:, 0]
-    )
+@inner
+def _side(ax: float, ay: float, bx: float, by: float, x: float, y: float) -> float:
+    """Twice the signed area of the triangle a b x."""
+    return (bx - ax) * (y - ay) - (by - ay) * (x - ax)

@@ -10,7 +10,7 @@ import numpy as np
 from sims.cutting.meat.flex import MaterialPoints
 from sims.cutting.meat.incision import Incision
 from sims.cutting.meat.knife import Knife
-from sims.cutting.meat.links import damage
+from sims.cutting.meat.links import pull
 from sims.cutting.meat.meat import HELD, PULLED, Meat
 from sims.cutting.meat.rule import cut
 from wbc.arrays import Array, BoolArray, positive
@@ -59,7 +59,11 @@ class Tissue:
             for name, points in zip((HELD, PULLED), meat.links.ends, strict=True)
         )
         self._knife = None if knife is None else Knife(model, knife)
-        self._rest = meat.links.rest
+        links = meat.links
+        self._rest = links.rest
+        self._law = self._rest, (links.stiffness, links.damping, links.onset)
+        self._forces = np.zeros((links.count, 3)), np.zeros((links.count, 3))
+        self._energy = np.zeros(links.count)
         self._step = float(model.opt.timestep)
         self.reset()
 
@@ -80,11 +84,12 @@ class Tissue:
             tip: (3,) the knife's tip now [m].
         """
         (x1, v1), (x2, v2) = (side.read(data) for side in self._sides)
-        hit = cut(before, tip, (x1, x2), self._width)
+        hit = cut(before, tip, x1, x2, self._width)
         self._cut[hit] |= self._alive[hit]
         self._alive[hit] = False
-        force, energy = self._pull(x2 - x1 - self._rest, v2 - v1)
-        forces = force, -force
+        forces, energy = self._forces, self._energy
+        law = self._law
+        pull((x1, x2), (v1, v2), *law, self._damage, self._alive, forces, energy)
         motion = tip - before
         reaction = self._incision.advance((x1, x2), self._alive, energy, tip, motion)
         if self._knife is not None:
@@ -95,18 +100,6 @@ class Tissue:
             self._knife_force = felt
         for side, total in zip(self._sides, forces, strict=True):
             side.push(data, total)
-
-    def _pull(self, pull: Array, rate: Array) -> tuple[Array, Array]:
-        """Forces (N, 3) on the held ends, and energies (N,) of the links."""
-        links = self.meat.links
-        stretch2 = np.einsum("ij,ij->i", pull, pull)
-        grown = damage(np.sqrt(stretch2), links.onset)
-        np.maximum(self._damage, grown, out=self._damage)
-        self._alive &= self._damage < 1.0
-        left = self._alive * (1.0 - self._damage)
-        stiffness = left * links.stiffness
-        force = stiffness[:, None] * pull + (left * links.damping)[:, None] * rate
-        return force, 0.5 * stiffness * stretch2
 
     def ends(self) -> tuple[Array, Array]:
         """Ends (N, 3), (N, 3) of all links now, cut ones as well [m]."""
