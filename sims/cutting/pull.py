@@ -36,7 +36,7 @@ class Pull:
         place: Array,
         force: float,
         rise: float = 0.8,
-        memory: float = 0.1,
+        memory: float = 0.05,
     ) -> None:
         self._task, self._force = task, force
         self._ramp = Quintic(force, rise)

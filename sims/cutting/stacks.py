@@ -25,11 +25,11 @@ __all__ = ["Stacks", "posture_at", "stacks"]
 
 KNIFE_STIFFNESS = 3600.0
 """Kp of P0 eq. (15) [1/s^2]; Kd is critical."""
-PULL_MASS = 5.0
+PULL_MASS = 4.0
 """Md of the pulling arm [kg]."""
 PULL_STIFFNESS = (2.0e4, 0.0, 2.0e4)
 """Kp across the pull [N/m], none along it, or 100 N would not be reached."""
-PULL_DAMPING = (600.0, 120.0, 600.0)
+PULL_DAMPING = (550.0, 80.0, 550.0)
 """Kd [N s/m], about critical across the pull."""
 TURNING = 1600.0
 """Of the bracket's orientation [1/s^2]."""
