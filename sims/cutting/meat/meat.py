@@ -16,6 +16,7 @@ from sims.cutting.meat.links import Links
 from sims.cutting.meat.meshfile import read_surface
 from sims.cutting.meat.scan import Seam, sheets_of
 from sims.cutting.meat.sheets import Sheets
+from sims.cutting.meat.texture import fibres
 from wbc import InputError
 from wbc.arrays import Array, frozen, positive, rotation
 
@@ -31,7 +32,8 @@ TABLE: Final = 0.27
 """Height of the table [m]."""
 HELD: Final = "held"
 PULLED: Final = "pulled"
-COLOURS: Final = {HELD: (0.55, 0.09, 0.10, 1.0), PULLED: (0.64, 0.13, 0.12, 1.0)}
+LOOKS: Final = {HELD: 0, PULLED: 1}
+"""Seeds of the images."""
 
 
 @final
@@ -177,7 +179,7 @@ class Meat:
                 poisson=self.poisson,
                 damping=self.damping,
                 mass=DENSITY * muscle.volume,
-                rgba=COLOURS[name],
+                look=fibres(LOOKS[name]),
                 held=name == HELD,
             )
         for key in list(spec.keys):
@@ -216,7 +218,7 @@ class Meat:
             for iz in range(nz + 1):
                 name = node_body(PULLED, ix, ny, iz)
                 node = spec.body(name)
-                node.add_site(name=f"{name}_held")
+                node.add_site(name=f"{name}_held", group=4)
                 tool.add_site(name=f"{name}_tool", pos=R.T @ (node.pos - p), group=4)
                 hold = spec.add_equality(
                     type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE
