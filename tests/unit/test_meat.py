@@ -11,6 +11,7 @@ from sims.cutting.meat import Meat, Tissue, Toughness
 from sims.cutting.meat.flex import MaterialPoints
 from sims.cutting.meat.links import damage
 from sims.cutting.meat.sheets import Sheets
+from sims.cutting.meat.texture import fibres
 from tests.tolerances import ROUND_OFF
 from wbc.errors import InputError
 
@@ -140,3 +141,10 @@ def test_sheets_out_of_order_are_refused():
         Sheets(sheets.fixed[::-1], sheets.seam[::-1], sheets.pulled[::-1])
     with pytest.raises(InputError, match="other x and z"):
         Sheets(sheets.fixed + 0.01, sheets.seam, sheets.pulled)
+
+
+def test_muscles_show_fibres_outside_and_pale_skin_at_the_seam():
+    image = fibres(0).astype(float)
+    assert image.shape == (256, 512, 3)
+    assert image[-5:].mean() > 1.5 * image[:200].mean()
+    assert image[:200, :, 0].mean() > 2 * image[:200, :, 1].mean()

@@ -7,6 +7,7 @@ from typing import Final, final
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from sims.cutting.meat.sheets import Muscle
 from wbc.arrays import Array
@@ -21,6 +22,8 @@ SUPPORT: Final = 4000.0
 """Vertical stiffness of the table under each lowest node [N/m]."""
 RADIUS: Final = 5e-4
 """Thickness of the skin, which only shows [m]."""
+IMAGE: Final = 0.3
+"""Length of muscle that an image of its fibres covers [m]."""
 
 
 def add_muscle(
@@ -32,29 +35,52 @@ def add_muscle(
     poisson: float,
     damping: float,
     mass: float,
-    rgba: tuple[float, float, float, float],
+    look: NDArray[np.uint8],
     held: bool,
 ) -> None:
-    """Add a flex that slides on the table, or one whose lowest-y face is also held.
+    """Add a flex that slides on the table; one that is held, by its lowest-y face.
 
     The table is no contact: the muscle's weight is taken by `gravcomp`, and springs
-    keep the lowest nodes at their height, both ways and without friction.
+    keep the lowest nodes at their height, both ways and without friction. `look` is an
+    image (rows, columns, 3) of fibres.
     """
     nx, _, nz = CELLS
     pin = f'<pin gridrange="0 0 0 {nx} 0 {nz}"/>' if held else ""
     child = mujoco.MjSpec.from_string(
-        f'<mujoco><worldbody><flexcomp name="{name}" type="direct" dim="3" '
-        f'dof="trilinear" cellcount="{_text(CELLS)}" mass="{mass}" radius="{RADIUS}" '
-        f'rgba="{_text(rgba)}" point="{_text(muscle.vertices.ravel())}" '
+        f'<mujoco><asset><texture name="{name}" type="2d" builtin="flat" width="1" '
+        f'height="1"/><material name="{name}" texture="{name}" specular=".35" '
+        f'shininess=".4"/></asset><worldbody><flexcomp name="{name}" type="direct" '
+        f'dim="3" dof="trilinear" cellcount="{_text(CELLS)}" mass="{mass}" '
+        f'radius="{RADIUS}" material="{name}" texcoord="{_text(_texcoord(muscle))}" '
+        f'point="{_text(muscle.vertices.ravel())}" '
         f'element="{_text(muscle.elements.ravel())}"><elasticity young="{young}" '
         f'poisson="{poisson}" damping="{damping}"/><contact selfcollide="none" '
         f'contype="0" conaffinity="0"/>{pin}</flexcomp></worldbody></mujoco>'
     )
+    _paint(child.textures[0], look)
     for body in child.bodies[1:]:
         body.gravcomp = 1.0
         if body.name.endswith("_0"):
             body.joints[2].stiffness = [SUPPORT, 0.0, 0.0]
     spec.attach(child, prefix=PREFIX, frame=spec.worldbody.add_frame())
+
+
+def _texcoord(muscle: Muscle) -> Array:
+    """Fibres along x, the seam at the last rows of the image; rows change with height.
+
+    Rows stay off the image's edges, where the renderer would mix the first and last.
+    """
+    x, _, z = muscle.vertices.T
+    height = (z - z.min()) / np.ptp(z)
+    outer, seam = 0.02 + 0.4 * height, 0.95 + 0.03 * height
+    row = outer + muscle.depth * (seam - outer)
+    return np.stack([x / IMAGE, row], axis=1).ravel()
+
+
+def _paint(texture: mujoco.MjsTexture, look: NDArray[np.uint8]) -> None:
+    texture.builtin = mujoco.mjtBuiltin.mjBUILTIN_NONE
+    texture.height, texture.width, texture.nchannel = look.shape
+    texture.data = look.tobytes()
 
 
 def node_body(name: str, ix: int, iy: int, iz: int) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Final, final
 
 import mujoco
@@ -12,7 +13,10 @@ from numpy.typing import ArrayLike
 from sims.cutting.meat.animal import Animal
 from sims.cutting.meat.flex import CELLS, add_muscle, node_body
 from sims.cutting.meat.links import Links
+from sims.cutting.meat.meshfile import read_surface
+from sims.cutting.meat.scan import Seam, sheets_of
 from sims.cutting.meat.sheets import Sheets
+from sims.cutting.meat.texture import fibres
 from wbc import InputError
 from wbc.arrays import Array, frozen, positive, rotation
 
@@ -28,7 +32,8 @@ TABLE: Final = 0.27
 """Height of the table [m]."""
 HELD: Final = "held"
 PULLED: Final = "pulled"
-COLOURS: Final = {HELD: (0.55, 0.09, 0.10, 1.0), PULLED: (0.64, 0.13, 0.12, 1.0)}
+LOOKS: Final = {HELD: 0, PULLED: 1}
+"""Seeds of the images."""
 
 
 @final
@@ -107,12 +112,58 @@ class Meat:
         """
         animal = Animal.draw(seed)
         sheets = animal.sheets(frozen(place, (2,), "place"), table)
-        return cls(
-            sheets,
-            Links.across(sheets, animal, links),
-            animal.young,
-            toughness=toughness or Toughness(),
-        )
+        return cls._of(sheets, animal, links, toughness)
+
+    @classmethod
+    def from_mesh(
+        cls,
+        path: str | Path,
+        seam: Seam | None = None,
+        *,
+        scale: float = 1.0,
+        seed: int = 0,
+        links: tuple[int, int] = LINKS,
+        place: tuple[float, float] = PLACE,
+        table: float = TABLE,
+        toughness: Toughness | None = None,
+    ) -> Meat:
+        """Meat of a scanned shape, x along the seam, y across it, z upwards.
+
+        Args:
+            path: closed surface in an .stl or .obj file.
+            seam: cutting surface y = s(x, z) in the coordinates of the file times
+                scale [m]; an upright plane through the middle by default.
+            scale: metres per unit of the file, 0.001 for millimetres.
+            seed: decides stiffness, link strength and fibre offsets.
+            links: number of links along the seam and up.
+            place: (x, y) of the seam's middle on the table [m].
+            table: height of the table [m].
+            toughness: what it takes to cut.
+
+        Raises:
+            InputError: a file that cannot be read; a surface that is open, crosses
+                itself or is in pieces; or a cutting surface outside the meat.
+        """
+        surface, animal = read_surface(path, scale), Animal.draw(seed)
+        middle = surface.vertices.mean(axis=0)[1]
+        found = sheets_of(surface, seam or (lambda x, z: np.full(x.shape, middle)))
+        at = frozen(place, (2,), "place")
+        centre = found.seam[found.seam.shape[0] // 2, found.seam.shape[1] // 2]
+        mid_x = 0.5 * (found.seam[0, 0, 0] + found.seam[-1, 0, 0])
+        move = [at[0] - mid_x, at[1] - centre[1], table - found.table]
+        sheets = Sheets(found.fixed + move, found.seam + move, found.pulled + move)
+        return cls._of(sheets, animal, links, toughness)
+
+    @classmethod
+    def _of(
+        cls,
+        sheets: Sheets,
+        animal: Animal,
+        grid: tuple[int, int],
+        toughness: Toughness | None,
+    ) -> Meat:
+        links = Links.across(sheets, animal, grid)
+        return cls(sheets, links, animal.young, toughness=toughness or Toughness())
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the muscles to a scene, and choose the integrator that suits them.
@@ -128,7 +179,7 @@ class Meat:
                 poisson=self.poisson,
                 damping=self.damping,
                 mass=DENSITY * muscle.volume,
-                rgba=COLOURS[name],
+                look=fibres(LOOKS[name]),
                 held=name == HELD,
             )
         for key in list(spec.keys):
@@ -167,7 +218,7 @@ class Meat:
             for iz in range(nz + 1):
                 name = node_body(PULLED, ix, ny, iz)
                 node = spec.body(name)
-                node.add_site(name=f"{name}_held")
+                node.add_site(name=f"{name}_held", group=4)
                 tool.add_site(name=f"{name}_tool", pos=R.T @ (node.pos - p), group=4)
                 hold = spec.add_equality(
                     type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE

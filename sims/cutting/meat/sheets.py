@@ -36,10 +36,12 @@ class Muscle:
     Attributes:
         vertices: (k, 3) in the world [m].
         elements: (e, 4) indices of vertices, positively oriented.
+        depth: (k,) share of the way from the outer face to the seam.
     """
 
     vertices: Array
     elements: IntArray
+    depth: Array
 
     @property
     def volume(self) -> float:
@@ -113,7 +115,7 @@ class Sheets:
 
     def muscles(self) -> tuple[Muscle, Muscle]:
         """The muscle that is held and the one that is pulled."""
-        return _between(self.fixed, self.seam), _between(self.seam, self.pulled)
+        return _between(self.fixed, self.seam), _between(self.pulled, self.seam)
 
     def on_seam(self, u: ArrayLike, w: ArrayLike) -> Array:
         """Points (k, 3) of the seam, at shares u (k,) along it and w (k,) upwards."""
@@ -139,9 +141,10 @@ class Sheets:
         return float(self.seam[..., 2].max())
 
 
-def _between(a: Array, b: Array) -> Muscle:
+def _between(outer: Array, seam: Array) -> Muscle:
     share = np.linspace(0.0, 1.0, LAYERS)[:, None]
-    lattice = a[:, None] + share[..., None] * (b - a)[:, None]  # (nu, LAYERS, nw, 3)
+    # (nu, LAYERS, nw, 3)
+    lattice = outer[:, None] + share[..., None] * (seam - outer)[:, None]
     count = lattice.shape[:3]
     index = np.arange(np.prod(count)).reshape(count)
     corners = np.stack(
@@ -160,7 +163,8 @@ def _between(a: Array, b: Array) -> Muscle:
     edges = vertices[elements[:, 1:]] - vertices[elements[:, :1]]
     flipped = np.linalg.det(edges) < 0
     elements[flipped] = elements[flipped][:, [0, 1, 3, 2]]
-    return Muscle(vertices, elements)
+    depth = np.broadcast_to(share, count).ravel()
+    return Muscle(vertices, elements, depth)
 
 
 def _bilinear(sheet: Array, u: Array, w: Array) -> Array:
