@@ -84,10 +84,10 @@ class KnifePose(CatalogueTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(position, (3,), f"target of '{self.name}'")
-        R = rotation(orientation, f"target of '{self.name}'")
-        V = frozen(twist, (6,), f"target twist of '{self.name}'")
-        A = frozen(acceleration, (6,), f"target acceleration of '{self.name}'")
+        p = frozen(position, (3,), "target of the knife")
+        R = rotation(orientation, "target of the knife")
+        V = frozen(twist, (6,), "target twist of the knife")
+        A = frozen(acceleration, (6,), "target acceleration of the knife")
         self._parameters[:] = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
         self._axis[9:] = np.concatenate([R[:, 1], V[3:], A[3:]])
 

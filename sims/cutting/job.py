@@ -42,6 +42,7 @@ class Job:
 
     Attributes:
         experiment: how the guide line is updated.
+        rocking: whether the knife may turn about the blade's normal.
         passages: what the knife does.
         pull: what the puller does.
         stopped: why the job ended early, None if it did not.
@@ -68,7 +69,7 @@ class Job:
             p=tip.xpos.copy(),
             theta=float(np.arctan2(-R[1, 0], -R[0, 0])),
         )
-        self.experiment = experiment
+        self.experiment, self.rocking = experiment, stacks.knife.rocking
         self.pull, self._guard = Pull(stacks.pull, cell.grip, plan.pull), Guard()
         self.stopped: str | None = None
         self.separated_at, self._ended = np.inf, np.inf

@@ -18,7 +18,11 @@ __all__ = ["metrics", "opening_after", "while_cutting"]
 
 REST: Final = 0.3
 """Time after a stroke at which the opening is measured [s]."""
-LOCAL: Final = {"guide_error_rms_m": 1e-3, "muscle_cut_length_m": 0.005}
+LOCAL: Final = {
+    "guide_error_rms_m": 1e-3,
+    "muscle_cut_length_m": 0.005,
+    "pull_force_std_n": 5.0,
+}
 """What only the corrected update is held to."""
 APART: Final = 0.05
 """Least distance between the axes of the two arms' links and tools [m]."""
@@ -44,7 +48,7 @@ def metrics(run: Run, experiment: Experiment, passages: int) -> list[Metric]:
         _bounded("guide_error_rms_m", guide_error(record, job.separated_at), local),
         Metric("pull_force_mean_n", _mean(pull), 102.0),
         Metric("pull_force_mean_least_n", _mean(pull), 98.0, ">="),
-        Metric("pull_force_std_n", float(np.std(pull)) if pull.size else np.nan, 5.0),
+        _bounded("pull_force_std_n", _spread(pull), local),
         Metric("cutting_force_max_n", np.linalg.norm(record.knife, axis=1).max()),
         Metric("knife_orientation_error_max_rad", record.heading_error.max(), 0.03),
         Metric("arm_clearance_min_m", arm_clearance(run), APART, ">="),
@@ -60,6 +64,10 @@ def _bounded(name: str, value: float, local: bool) -> Metric:
 
 def _mean(values: Array) -> float:
     return float(values.mean()) if values.size else np.nan
+
+
+def _spread(values: Array) -> float:
+    return float(values.std()) if values.size else np.nan
 
 
 def while_cutting(record: Record, separated_at: float) -> BoolArray:

@@ -36,7 +36,8 @@ class Record:
         stroke: (T,) index of the passage that is being cut, -1 between passages.
         tip, grip: (T, 3) positions [m].
         wanted: (T, 3) target of the tip [m].
-        heading_error: (T,) angle between the knife's orientation and its target [rad].
+        heading_error: (T,) angle between the knife's orientation and its target, or
+            between the blade's normals where it may rock [rad].
         knife: (T, 3) force of the knife on the meat [N].
         pull, due: (T,) force along +y of the puller on the meat, and as wanted [N].
         coarse_t: (C,) [s].
@@ -47,6 +48,7 @@ class Record:
 
     def __init__(self, cell: CuttingCell, job: Job, ticks: int) -> None:
         self._cell, self._job, self._count, self._coarse = cell, job, 0, 0
+        self._misaligned = _normals if job.rocking else _angle
         points = cell.tissue.interface_points()[0]
         surface = GuideSurface(points)
         x = np.linspace(*surface.extent, SAMPLES)
@@ -74,7 +76,8 @@ class Record:
         self.t[i] = cell.data.time
         self.tip[i], self.grip[i] = cell.tip, cell.grip
         self.wanted[i] = passages.target.p
-        self.heading_error[i] = _angle(cell.knife_orientation, passages.target.R)
+        R, R_d = cell.knife_orientation, passages.target.R
+        self.heading_error[i] = self._misaligned(R, R_d)
         self.knife[i] = cell.wrenches[CUTTER][:3]
         self.pull[i], self.due[i] = cell.wrenches[PULLER][1], self._job.pull.due
         if passages.phase == "stroke":
@@ -117,6 +120,11 @@ class Record:
         names = ("t", "stroke", "tip", "grip", "wanted", "knife", "pull", "due")
         names += ("coarse_t", "guide", "opening", "cut", "initial", "heading_error")
         return {name: np.asarray(getattr(self, name)) for name in names}
+
+
+def _normals(R: Array, R_d: Array) -> float:
+    """Angle between the blade's normals [rad]."""
+    return float(np.arccos(min(R[:, 1] @ R_d[:, 1], 1.0)))
 
 
 def _angle(R: Array, R_d: Array) -> float:
