@@ -4,11 +4,13 @@ Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometry (`PointOnPoin
 `PointOnLine`, `PointOnPlane`, `PointOnCurve`, `AxisAlignment`, `AxisAlongPath`),
 motion along paths (`TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
 `Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`).
+(`JointLimits`, `JointLocking`, `TorqueLimits`). `KnifePose` guides a blade against
+what it cuts; `Clearance` keeps two arms of one model apart.
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
 from tasks.axis import AxisAlignment, AxisAlongPath
+from tasks.clearance import Clearance
 from tasks.curve import Curve
 from tasks.force import HybridForceMotion
 from tasks.forcelaw import ForceLaw
@@ -25,6 +27,7 @@ __all__ = [
     "Admittance",
     "AxisAlignment",
     "AxisAlongPath",
+    "Clearance",
     "Curve",
     "Damping",
     "ForceLaw",

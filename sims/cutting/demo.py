@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import get_args
 
 from sims.cutting.correction import Experiment
@@ -15,6 +16,7 @@ from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
 from sims.demo import Demo, Options, Outcome
 from sims.log import shared_metrics
+from sims.metrics import Metric
 from sims.mismatch import Mismatch
 from sims.viewer import open_viewer
 from wbc import UnknownName
@@ -22,6 +24,8 @@ from wbc.arrays import Array
 
 __all__ = ["DEMO", "EXPERIMENTS", "trial_of"]
 
+FASTER = 1.5
+"""Than real time, on one core."""
 EXPERIMENTS: tuple[Experiment, ...] = get_args(Experiment)
 
 
@@ -62,13 +66,20 @@ def _run(options: Options) -> Outcome:
         sys.stderr.write(f"wbc: the cut was stopped: {job.stopped}\n")
     own = metrics(run, trial.experiment, len(trial.plan.depths))
     return Outcome(
-        metrics=[*own, *shared_metrics(run.logs)],
+        metrics=[*own, *map(_in_time, shared_metrics(run.logs))],
         series=_series(run),
         figures=lambda: figures(run),
         replay=lambda: replay(run),
         picture=lambda: picture(run),
         facts=_facts(run, trial),
     )
+
+
+def _in_time(metric: Metric) -> Metric:
+    """The cell's own bound on the real-time factor."""
+    if metric.name != "realtime_factor":
+        return metric
+    return replace(metric, bound=FASTER)
 
 
 def _series(run: Run) -> dict[str, Array]:

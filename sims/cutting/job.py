@@ -21,7 +21,7 @@ from wbc.arrays import Array
 
 __all__ = ["Job", "check_plan"]
 
-LETTING_GO = 0.06
+LETTING_GO = 0.02
 """How fast the pull goes away when nothing holds the muscle any more [s]."""
 EASING = 0.5
 """How fast it goes away when the job stops with links left [s]."""

@@ -45,7 +45,7 @@ def metrics(run: Run, experiment: Experiment, passages: int) -> list[Metric]:
         Metric("separated", float(tissue.separated), 1, "=="),
         Metric("passages", job.passages.completed, passages, "=="),
         _bounded("muscle_cut_length_m", tissue.muscle_cut_length, local),
-        _bounded("guide_error_rms_m", guide_error(record, job.separated_at), local),
+        _bounded("guide_error_rms_m", guide_error(record), local),
         Metric("pull_force_mean_n", _mean(pull), 102.0),
         Metric("pull_force_mean_least_n", _mean(pull), 98.0, ">="),
         _bounded("pull_force_std_n", _spread(pull), local),
@@ -75,10 +75,9 @@ def while_cutting(record: Record, separated_at: float) -> BoolArray:
     return (record.stroke >= 0) & (record.t < separated_at)
 
 
-def guide_error(record: Record, separated_at: float) -> float:
+def guide_error(record: Record) -> float:
     """Root mean square of the knife's distance from the guide line, along y [m]."""
-    error = record.guide_error[record.coarse_t < separated_at]
-    error = error[np.isfinite(error)]
+    error = record.guide_error[np.isfinite(record.guide_error)]
     return float(np.sqrt(np.mean(error**2))) if error.size else np.nan
 
 

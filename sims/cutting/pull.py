@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from tasks import Impedance
 from wbc.arrays import Array
 
 __all__ = ["Pull"]
+
+BRAKING: Final = 200.0
+"""What stops the arm once it has let go [N s/m]."""
 
 
 @final
@@ -44,7 +47,7 @@ class Pull:
         self.due, self._memory = 0.0, memory
         self._place = np.array(place)
         self._before: tuple[float, float] | None = None
-        self._speed = 0.0
+        self._speed = self._measured = 0.0
 
     @property
     def steady(self) -> bool:
@@ -59,15 +62,16 @@ class Pull:
         else:
             since, start, fall = self._released
             due = start - Quintic(start, fall).at(t - since).value
-        if due != self.due:
+        braking = 0.0 if self._released is None else BRAKING * self._measured
+        if due != self.due or braking:
             self.due = float(due)
-            self._task.set_force(np.array([0.0, self.due, 0.0]))
+            self._task.set_force(np.array([0.0, self.due - braking, 0.0]))
 
     def _follow(self, t: float, y: float) -> None:
         if self._before is not None and t > self._before[0]:
             dt = t - self._before[0]
-            measured = (y - self._before[1]) / dt
-            self._speed += dt / self._memory * (measured - self._speed)
+            self._measured = (y - self._before[1]) / dt
+            self._speed += dt / self._memory * (self._measured - self._speed)
         self._before = (t, y)
         speed = self._speed if self._released is None else 0.0
         self._task.set_target(self._place, (0.0, speed, 0.0))

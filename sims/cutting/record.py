@@ -41,7 +41,8 @@ class Record:
         knife: (T, 3) force of the knife on the meat [N].
         pull, due: (T,) force along +y of the puller on the meat, and as wanted [N].
         coarse_t: (C,) [s].
-        guide: (C, 2) x and y of the guide line where the knife is; NaN between strokes.
+        guide: (C, 2) x and y of the guide line where the knife is; NaN between strokes,
+            and when nothing is left of it.
         opening, cut: (C,) mean opening [m] and share of links cut.
         qpos: (C, nq) of the world.
     """
@@ -109,10 +110,11 @@ class Record:
             setattr(self, name, getattr(self, name)[:k])
         for name in ("coarse_t", "opening", "cut", "guide", "qpos"):
             setattr(self, name, getattr(self, name)[:c])
+        self.guide[self.coarse_t >= self._job.separated_at] = np.nan
 
     @property
     def guide_error(self) -> Array:
-        """Knife less guide line along y, (C,) [m]; NaN between strokes."""
+        """Knife less guide line along y, (C,) [m]; NaN where there is none."""
         return self.tip[::EVERY, 1][: len(self.guide)] - self.guide[:, 1]
 
     def arrays(self) -> dict[str, Array]:

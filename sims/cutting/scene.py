@@ -28,9 +28,9 @@ def scene(meat: Meat) -> mujoco.MjSpec:
     """Arms, table and meat; nothing collides, the knife and the links are a process."""
     spec = mujoco.MjSpec.from_string(robot_of(CUTTER, PULLER).mjcf)
     add_room(spec)
-    add_box(spec, "table", (0.24, -0.10, TABLE - 0.03), (0.72, 0.34, TABLE), STEEL)
+    add_box(spec, "table", (0.24, -0.10, TABLE - 0.03), (0.72, 0.80, TABLE), STEEL)
     for x in (0.26, 0.66):
-        for y in (-0.08, 0.28):
+        for y in (-0.08, 0.74):
             leg = f"leg {x} {y}"
             add_box(spec, leg, (x, y, 0.0), (x + 0.04, y + 0.04, TABLE - 0.03), STEEL)
     meat.add_to(spec)

@@ -10,6 +10,7 @@ import numpy as np
 from sims.cutting.layout import CUTTER, GRIP, PULLER, TIP
 from sims.settle import settle
 from tasks import (
+    Clearance,
     FrameOrientation,
     FramePose,
     Impedance,
@@ -18,7 +19,7 @@ from tasks import (
     Posture,
     TorqueLimits,
 )
-from wbc import Hierarchy, Robot
+from wbc import Hierarchy, Level, Robot
 from wbc.arrays import Array
 
 __all__ = ["Stacks", "posture_at", "stacks"]
@@ -33,6 +34,8 @@ PULL_DAMPING = (550.0, 80.0, 550.0)
 """Kd [N s/m], about critical across the pull."""
 TURNING = 1600.0
 """Of the bracket's orientation [1/s^2]."""
+APART = 0.18
+"""Between elbows and between wrists, whose housings have radii of about 0.08 [m]."""
 MARGIN = 0.02
 """From the position limits [rad]."""
 
@@ -66,12 +69,20 @@ def stacks(
     knife, pull, upright = _tasks(robots, postures, rocking)
     if len(robots) == 1:
         (both,) = robots
-        level = knife + (pull + upright)
-        return Stacks((_ranked(level, postures[both.name]),), knife, pull)
+        apart = _clearance()
+        work = apart >> knife + pull + upright
+        return Stacks((_ranked(work, postures[both.name]),), knife, pull)
     cutter, puller = robots
     cutting = _ranked(Hierarchy.of(knife), postures[cutter.name])
     pulling = _ranked(Hierarchy.of(pull + upright), postures[puller.name])
     return Stacks((cutting, pulling), knife, pull)
+
+
+def _clearance() -> Level:
+    """Elbows and wrists of the two arms, kept apart above all work."""
+    elbows = Clearance(f"{CUTTER}_link4", f"{PULLER}_link4", APART, name="elbows apart")
+    wrists = Clearance(f"{CUTTER}_link6", f"{PULLER}_link6", APART, name="wrists apart")
+    return elbows + wrists
 
 
 def _ranked(work: Hierarchy, q: Array) -> Hierarchy:
