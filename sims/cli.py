@@ -51,14 +51,15 @@ def _parser() -> argparse.ArgumentParser:
     against = _add(
         commands,
         "compare",
-        "runs a cell under several resolvers",
-        lambda a: compare(a.cell, a.resolvers.split(","), _options(a), a.out),
+        "runs a cell under several resolvers, or its experiments",
+        lambda a: compare(a.cell, a.resolvers, _options(a), a.out),
     )
     against.add_argument("cell", metavar="CELL", help="see 'wbc list'")
     against.add_argument(
         "--resolvers",
-        default="hqp,nullspace,weighted",
-        help="names with commas between",
+        type=lambda text: text.split(","),
+        help="names with commas between; by default the cell's experiments, or hqp, "
+        "nullspace and weighted where it has none",
     )
     _common(against)
     speed = _add(

@@ -109,7 +109,7 @@ class Job:
             t, tip, wanted, felt[CUTTER], pull, self.pull.due
         )
         if self.stopped is not None:
-            self.passages.stop()
+            self.passages.stop(tip)
             self.pull.release(t, EASING)
 
 

@@ -108,12 +108,11 @@ class Passages:
         """Nothing is left to cut: slow down, then up, and done."""
         self._last, self._closing = self.index, True
         if self.phase in ("over", "down"):
-            self.stop()
+            self.stop(self.target.p)
 
-    def stop(self) -> None:
-        """Stay where the target is now."""
-        p, R = self.target.p, self.target.R
-        self.target = KnifeTarget(p, R, np.zeros(6), np.zeros(6))
+    def stop(self, p: Array) -> None:
+        """Stay at p (3,) [m]."""
+        self.target = KnifeTarget(p, self.target.R, np.zeros(6), np.zeros(6))
         self.phase = "done"
 
     def _set_off(self, frame: Frame) -> None:
