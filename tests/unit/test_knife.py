@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from sims.cutting.meat import Meat, Tissue, Toughness
 from sims.cutting.meat.face import Face
-from sims.cutting.meat.knife import resistance
+from sims.cutting.meat.knife import Indentation, resistance
 from wbc.errors import UnknownName
 
 EDGE = np.array([0.0, 0.0, -1.0])
@@ -19,29 +19,41 @@ H = 1e-3
 SPEED = 0.1  # [m/s]
 
 
+def sliding(motion, tearing: float, friction: float = 0.0) -> np.ndarray:
+    """Force (3,) on a knife that has gone on steadily."""
+    tissue = Indentation()
+    for _ in range(1000):
+        force = tissue.force(motion, resistance(motion, EDGE, tearing, friction))
+    return force
+
+
 @pytest.mark.parametrize(
     ("xi", "push", "slice_"), [(0.0, 1.0, 0.0), (1.0, 0.5, 0.5), (2.0, 0.2, 0.4)]
 )
 def test_slicing_lowers_the_force_as_the_energy_balance_says(xi, push, slice_):
-    velocity = 10.0 * np.array([1.0, 0.0, -xi])  # far above the creeping speed
-    force = resistance(velocity, EDGE, 40.0, 0.0)
-    assert_allclose(force, 40.0 * np.array([-push, 0.0, slice_]), atol=1e-6)
+    """Along the push J w / (1 + xi^2), along the slice J w xi / (1 + xi^2)."""
+    force = sliding(1e-4 * np.array([1.0, 0.0, -xi]), 40.0)
+    assert_allclose(force, 40.0 * np.array([-push, 0.0, slice_]), atol=1e-9)
 
 
 def test_work_against_the_resistance_is_toughness_times_area_at_any_ratio():
     for xi in (0.0, 0.7, 3.0):
-        velocity = 10.0 * np.array([1.0, 0.0, -xi])
-        power = -resistance(velocity, EDGE, 40.0, 0.0) @ velocity
-        assert power == pytest.approx(40.0 * 10.0)
-
-
-def test_a_knife_at_rest_feels_nothing():
-    assert_allclose(resistance(np.zeros(3), EDGE, 40.0, 5.0), 0.0)
+        motion = 1e-4 * np.array([1.0, 0.0, -xi])
+        assert -sliding(motion, 40.0) @ motion == pytest.approx(40.0 * 1e-4)
 
 
 def test_friction_acts_against_the_motion():
-    v = np.array([3.0, 4.0, 0.0])
-    assert_allclose(resistance(v, EDGE, 0.0, 5.0), [-3.0, -4.0, 0.0], atol=1e-5)
+    force = sliding(1e-4 * np.array([0.6, 0.8, 0.0]), 0.0, friction=5.0)
+    assert_allclose(force, [-3.0, -4.0, 0.0], atol=1e-9)
+
+
+def test_tissue_yields_before_it_is_cut_and_holds_a_knife_that_stands():
+    tissue, motion = Indentation(), np.array([1e-3, 0.0, 0.0])
+    assert_allclose(tissue.force(motion, 1e4), [-20.0, 0.0, 0.0])
+    assert_allclose(tissue.force(0.0 * motion, 1e4), [-20.0, 0.0, 0.0])
+    assert_allclose(tissue.force(-motion, 1e4), 0.0, atol=1e-9)
+    assert_allclose(tissue.force(motion, 5.0), [-5.0, 0.0, 0.0])
+    assert_allclose(tissue.force(motion, 0.0), 0.0)
 
 
 # --------------------------------------------------------------- a knife on rails
@@ -87,11 +99,11 @@ def seam_y(meat: Meat, x: float, z: float) -> float:
     return float(seam[np.hypot(seam[:, 0] - x, seam[:, 2] - z).argmin(), 1])
 
 
-def straight(meat: Meat, z: float, y_offset: float = 0.0):
-    """A way along x through the middle tenth of the seam."""
+def straight(meat: Meat, z: float, y_offset: float = 0.0, half: float = 0.015):
+    """A way along x through the middle of the seam, or beside it [m]."""
     x = meat.sheets.seam[:, 0, 0].mean()
     y = seam_y(meat, x, z) + y_offset
-    return np.array([x - 0.015, y, z]), np.array([x + 0.015, y, z])
+    return np.array([x - half, y, z]), np.array([x + half, y, z])
 
 
 def test_cutting_the_seam_costs_its_toughness_times_the_area():
@@ -117,10 +129,10 @@ def test_knife_in_the_seam_cuts_no_muscle():
 def test_knife_beside_the_seam_cuts_muscle_and_feels_it(side):
     meat = plain()
     rails = Rails(meat)
-    forces = rails.sweep(*straight(meat, 0.33, side * 0.02))
-    assert rails.tissue.muscle_cut_length == pytest.approx(0.03, rel=1e-6)
-    depth = meat.sheets.top - 0.33
-    assert -forces[5:, 0].mean() == pytest.approx(1500.0 * depth, rel=0.1)
+    forces = rails.sweep(*straight(meat, 0.33, side * 0.02, half=0.04))
+    assert rails.tissue.muscle_cut_length == pytest.approx(0.08, rel=1e-6)
+    depth = meat.sheets.top - 0.33  # the knife drags the meat along, then cuts
+    assert -forces[-50:, 0].mean() == pytest.approx(1500.0 * depth, rel=0.15)
     assert rails.tissue.links_cut_fraction == 0.0
 
 
@@ -166,6 +178,43 @@ def test_tissue_without_a_knife_in_the_scene_cuts_for_free():
     rails.sweep(*straight(meat, 0.33))
     assert rails.tissue.links_cut_fraction > 0.0
     assert_allclose(rails.data.xfrc_applied, 0.0)
+
+
+def driven(meat: Meat, force: float, seconds: float) -> tuple[Tissue, float, float]:
+    """Tissue, way and largest speed of a knife of 5 kg on a slide under a force."""
+    spec = mujoco.MjSpec()
+    spec.option.timestep = H
+    meat.add_to(spec)
+    start, _ = straight(meat, 0.31)
+    start[0] = meat.sheets.seam[0, 0, 0] - 0.002
+    start[1] = seam_y(meat, start[0], 0.31)
+    knife = spec.worldbody.add_body(name="knife", pos=start, quat=[0, 1, 0, 0])
+    knife.mass, knife.inertia, knife.explicitinertial = 5.0, [0.01] * 3, True
+    knife.add_site(name="tip")
+    knife.add_joint(
+        name="x", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0], damping=[100, 0, 0]
+    )
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    tissue = Tissue(meat, model, data, knife="tip")
+    dof, fastest, tip = model.joint("x").dofadr[0], 0.0, start
+    for _ in range(round(seconds / H)):
+        mujoco.mj_step1(model, data)
+        before, tip = tip, data.site("tip").xpos.copy()
+        tissue.apply(data, before, tip)
+        data.qfrc_applied[dof] = force
+        mujoco.mj_step2(model, data)
+        fastest = max(fastest, abs(float(data.qvel[dof])))
+    return tissue, float(tip[0] - start[0]), fastest
+
+
+def test_a_knife_that_cannot_cut_drags_the_meat_along_and_nothing_flies_apart():
+    tissue, way, fastest = driven(plain(seam=1e5, muscle=1e5), 60.0, 1.0)
+    assert tissue.knife_force[0] == pytest.approx(-60.0, rel=0.05)  # at rest
+    assert way < 0.1
+    assert fastest < 0.5
+    _, sharp, _ = driven(plain(seam=100.0, muscle=100.0), 60.0, 1.0)
+    assert sharp > 0.2
 
 
 def test_unknown_knife_is_refused_with_the_sites_that_exist():

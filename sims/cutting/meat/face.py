@@ -19,11 +19,13 @@ class Wound(NamedTuple):
         inside: how far the tip is behind the muscle's face, along y [m].
         depth: of the tip below the muscle's top [m].
         nearest: index of the material point next to it.
+        above: number of material points in line above that one.
     """
 
     inside: float
     depth: float
     nearest: int
+    above: int
 
 
 @final
@@ -48,7 +50,8 @@ class Face:
         inside = self._sign * beyond
         if not (within and 0.0 < inside < self._thickness[nearest]):
             return None
-        return Wound(inside, depth, nearest)
+        above = self._grid[1] - 1 - nearest % self._grid[1]
+        return Wound(inside, depth, nearest, above)
 
 
 @compiled

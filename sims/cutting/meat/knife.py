@@ -11,36 +11,53 @@ from wbc import UnknownName
 from wbc.arrays import Array
 from wbc.linalg import cross
 
-__all__ = ["Knife", "resistance"]
+__all__ = ["CHORD", "Indentation", "Knife", "resistance"]
 
 CHORD: Final = 0.028
 """From the edge to the back of the blade [m]."""
-CREEP: Final = 2e-3
-"""Speed below which the resistance fades, as it must without stiction [m/s]."""
+INDENTATION: Final = 2e4
+"""Stiffness of tissue before an edge cuts it [N/m]."""
 
 
-def resistance(velocity: Array, edge: Array, tearing: float, friction: float) -> Array:
-    """Force (3,) on a knife that moves through tissue [N].
+def resistance(motion: Array, edge: Array, tearing: float, friction: float) -> float:
+    """Force with which tissue resists a knife that moves on in it [N].
 
-    With xi the ratio of the speeds along the edge (slicing) and across it (pushing),
-    the energy balance of Atkins (2004) gives
-    J w / (1 + xi^2) against the push and J w xi / (1 + xi^2) against the slice.
+    With xi the ratio of the ways along the edge (slicing) and across it (pushing), the
+    energy balance of Atkins (2004) gives J w / (1 + xi^2) against the push and
+    J w xi / (1 + xi^2) against the slice: together a force against the motion of
+    J w / sqrt(1 + xi^2), whose work is J w times the way that the edge is pushed.
 
     Args:
-        velocity: (3,) of the knife [m/s].
-        edge: (3,) unit vector along its edge.
+        motion: (3,) of the knife in a step [m]; at rest it counts as pushing.
+        edge: (3,) unit vector along the knife's edge.
         tearing: toughness times engaged length of the edge, J w [N].
-        friction: of the blade's sides, against the motion [N].
+        friction: of the blade's sides [N].
     """
-    speed = float(np.sqrt(velocity @ velocity))
-    slicing = float(velocity @ edge)
-    across = velocity - slicing * edge
-    pushing = float(np.sqrt(across @ across))
-    fade = 1.0 / np.hypot(speed, CREEP)
-    # tearing (push n + xi slice t) / (1 + xi^2), xi = slicing / pushing, is
-    # tearing * pushing * velocity / speed^2: no division by a pushing speed of 0.
-    share = pushing / speed if speed > 0.0 else 0.0
-    return np.asarray(-(tearing * share + friction) * fade * velocity)
+    way2 = float(motion @ motion)
+    slicing = float(motion @ edge)
+    share = max(1.0 - slicing * slicing / way2, 0.0) ** 0.5 if way2 > 0.0 else 1.0
+    return tearing * share + friction
+
+
+@final
+class Indentation:
+    """Tissue in front of an edge: it yields elastically, then is cut.
+
+    So the resistance exists at rest as well, and a knife that cannot cut stands still
+    instead of creeping. Motions are those of the knife against the tissue.
+    """
+
+    def __init__(self) -> None:
+        self._z = np.zeros(3)
+
+    def force(self, motion: Array, limit: float) -> Array:
+        """Force (3,) on the knife after a motion (3,) [m], at most the limit [N]."""
+        z = self._z + motion
+        force = INDENTATION * float(np.sqrt(z @ z))
+        if force > limit:
+            z *= limit / force
+        self._z = z
+        return -INDENTATION * z
 
 
 @final

@@ -15,8 +15,8 @@ __all__ = ["Muscle", "Sheets"]
 
 THINNEST: Final = 2e-3
 """Least thickness of a muscle at its seam [m]; less is a seam outside the meat."""
-LAYERS: Final = 5
-"""Layers of vertices from a muscle's outer face to its seam, both counted."""
+LAYERS: Final = 2
+"""Of vertices from outer face to seam: flexes have their own grid, more only cost."""
 KUHN: Final = (
     (0, 1, 3, 7),
     (0, 1, 7, 5),

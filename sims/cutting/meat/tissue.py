@@ -9,7 +9,7 @@ import numpy as np
 
 from sims.cutting.meat.flex import MaterialPoints
 from sims.cutting.meat.incision import Incision
-from sims.cutting.meat.knife import Knife
+from sims.cutting.meat.knife import Indentation, Knife
 from sims.cutting.meat.links import pull
 from sims.cutting.meat.meat import HELD, PULLED, Meat
 from sims.cutting.meat.rule import cut
@@ -61,10 +61,10 @@ class Tissue:
         self._knife = None if knife is None else Knife(model, knife)
         links = meat.links
         self._rest = links.rest
+        self._step = float(model.opt.timestep)
         self._law = self._rest, (links.stiffness, links.damping, links.onset)
         self._forces = np.zeros((links.count, 3)), np.zeros((links.count, 3))
         self._energy = np.zeros(links.count)
-        self._step = float(model.opt.timestep)
         self.reset()
 
     def reset(self) -> None:
@@ -73,6 +73,8 @@ class Tissue:
         self._alive, self._cut = np.ones(n, dtype=bool), np.zeros(n, dtype=bool)
         self._damage = np.zeros(n)
         self._incision = Incision(self.meat, self._width)
+        self._muscle_cut_length = 0.0
+        self._indentation = Indentation()
         self._knife_force = np.zeros(3)
 
     def apply(self, data: mujoco.MjData, before: Array, tip: Array) -> None:
@@ -91,13 +93,17 @@ class Tissue:
         law = self._law
         pull((x1, x2), (v1, v2), *law, self._damage, self._alive, forces, energy)
         motion = tip - before
-        reaction = self._incision.advance((x1, x2), self._alive, energy, tip, motion)
+        reaction = self._incision.ahead((x1, x2), self._alive, energy, tip, motion)
         if self._knife is not None:
             edge = self._knife.edge(data)
-            felt = reaction.force(motion / self._step, edge, self.meat.toughness)
+            against = motion - self._step * reaction.mean((v1, v2))
+            limit = reaction.limit(against, edge, self.meat.toughness)
+            felt = self._indentation.force(against, limit)
             self._knife.feel(data, felt, tip - 0.5 * reaction.depth * edge)
             reaction.share(forces, -felt)
             self._knife_force = felt
+        if reaction.in_muscle:
+            self._muscle_cut_length += float(np.hypot(motion[0], motion[1]))
         for side, total in zip(self._sides, forces, strict=True):
             side.push(data, total)
 
@@ -138,7 +144,7 @@ class Tissue:
     @property
     def muscle_cut_length(self) -> float:
         """Way of the knife in the xy plane inside a muscle, beside the seam [m]."""
-        return self._incision.muscle_length
+        return self._muscle_cut_length
 
     @property
     def knife_force(self) -> Array:
