@@ -119,8 +119,9 @@ class CuttingCell:
             for robot in robots
         ]
         if mismatch is not None:
-            for view in self.views:
-                mismatch.apply(self.model, view.dofs, view.robot.tau_max)
+            dofs = np.concatenate([view.dofs for view in self.views])
+            limits = np.concatenate([robot.tau_max for robot in robots])
+            mismatch.apply(self.model, dofs, limits)
         self.tissue = tissue(self.model, self.data)
         self._tip, self._grip = self._site(TIP), self._site(GRIP)
         self.wrenches: dict[str, Array] = {}

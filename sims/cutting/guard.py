@@ -26,9 +26,9 @@ class Guard:
     """
 
     lag: float = 0.015
-    cutting: float = 150.0
+    cutting: float = 120.0
     excess: float = 40.0
-    patience: float = 0.15
+    patience: float = 0.05
     _since: dict[str, float] = field(default_factory=dict)
 
     def check(

@@ -24,7 +24,7 @@ LOCAL: Final = {
     "pull_force_std_n": 5.0,
 }
 """What only the corrected update is held to."""
-APART: Final = 0.05
+APART: Final = 0.08
 """Least distance between the axes of the two arms' links and tools [m]."""
 
 

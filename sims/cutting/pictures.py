@@ -13,6 +13,7 @@ import numpy as np
 from sims.cutting.cell import CuttingCell
 from sims.cutting.loop import Run
 from sims.cutting.metrics import REST
+from sims.report.axes import PALETTE
 from sims.report.replay import Replay, Trace
 from sims.report.snapshot import Image, NoDisplay, render
 
@@ -98,11 +99,11 @@ def replay(run: Run) -> str:
         x = np.linspace(record.low, record.high, 40)
         z = np.full(x.size, run.job.passages.plan.depths[index])
         planned = np.column_stack([x, line(x), z])
-        traces.append(Trace(f"planned {index + 1}", planned, "#0072B2", 0.0015))
-        during = np.flatnonzero(record.stroke == index)[::THIN]
-        if during.size > 1:
-            way, t = record.tip[during], record.t[during]
-            traces.append(Trace(f"knife {index + 1}", way, "#D55E00", 0.002, t))
+        traces.append(
+            Trace(f"passage {index + 1}", planned, PALETTE[index % 7], 0.0015)
+        )
+    way = record.tip[::THIN]
+    traces.append(Trace("knife", way, "#000000", 0.0015, record.t[::THIN]))
     return Replay(
         run.cell.model,
         record.coarse_t,

@@ -104,7 +104,8 @@ def test_a_knife_that_is_stuck_stops_the_cut_and_nothing_flies_apart():
     assert "at (0." in run.job.stopped
     after = run.record.t[-1]
     assert still(run, after - 0.2, after) < 2e-3
-    assert np.abs(run.logs[0].v[-1]).max() < 0.05
+    arm = run.logs[0]
+    assert (np.abs(arm.v[-1]) < 0.1 * arm.robot.v_max).all()
     assert run.job.pull.due < 1.0
 
 
