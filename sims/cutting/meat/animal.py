@@ -8,6 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from sims.cutting.meat.sheets import Sheets
+from wbc import InputError
 from wbc.arrays import Array
 
 __all__ = ["Animal", "Field"]
@@ -87,7 +88,12 @@ class Animal:
         tension; strengths are those of perimysium times the factor 3 that Swatland
         (2006) found for aponeurosis. The seam's stiffness lets it open by about 5 mm
         under 100 N.
+
+        Raises:
+            InputError: a seed that is not a whole number from 0 on.
         """
+        if int(seed) != seed or seed < 0:
+            raise InputError(f"seed must be a whole number from 0 on, got {seed}.")
         rng = np.random.default_rng(seed)
         return cls(
             length=rng.uniform(0.26, 0.29),
