@@ -102,7 +102,7 @@ class Animal:
             bend=rng.uniform(-1.0, 1.0, 3) * [0.012, 0.018, 0.004],
             tilt=rng.uniform(-1.0, 1.0, 3) * [0.004, 0.002, 0.001],
             hump=rng.uniform(-1.0, 1.0, 2) * 0.02,
-            young=rng.uniform(3.5e4, 7e4),
+            young=rng.uniform(3e4, 5.5e4),
             link_stiffness=rng.uniform(0.65e6, 1.0e6),
             strength=rng.uniform(6.5e4, 9e4),
             patches=(
