@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from robots.assembly import add_section, parse
 from wbc import ModelError, Robot
-from wbc.arrays import Array, rotation
-from wbc.errors import InputError
+from wbc.arrays import Array, frozen, rotation
 
 __all__ = ["Placed", "load", "mjcf"]
 
@@ -60,10 +59,7 @@ class Placed:
     R: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
-        p = np.array(self.position, dtype=np.float64)
-        if p.shape != (3,) or not np.isfinite(p).all():
-            raise InputError(f"position must be three finite numbers, got {p}.")
-        object.__setattr__(self, "position", p)
+        object.__setattr__(self, "position", frozen(self.position, (3,), "position"))
         object.__setattr__(self, "R", rotation(self.R, "R of a placed arm"))
 
 
@@ -79,11 +75,13 @@ def mjcf(arms: Mapping[str, Placed]) -> str:
         arms: name -> arm, in the order of the joints.
 
     Raises:
-        ModelError: no arm, arms that disagree about compiler or options, or one that
-            cannot be read.
+        ModelError: no arm, one called "arms", arms that disagree about compiler or
+            options, or one that cannot be read.
     """
     if not arms:
         raise ModelError("there is no arm to compose: give at least one.")
+    if ROOT in arms:
+        raise ModelError(f"'{ROOT}' is the body of all arms: call that arm otherwise.")
     robots = [_single(name, placed) for name, placed in arms.items()]
     parsed = {name: _prefixed(placed.mjcf, name) for name, placed in arms.items()}
     whole = ET.Element("mujoco", model="_".join(arms))

@@ -128,6 +128,8 @@ def test_a_mesh_without_a_name_is_still_found():
 def test_nothing_to_compose_is_refused():
     with pytest.raises(ModelError, match="no arm"):
         compose.load({})
+    with pytest.raises(ModelError, match="body of all arms"):
+        compose.load({"arms": Placed(lwr4.mjcf())})
 
 
 @pytest.mark.parametrize("position", [(0, 0), (0, 0, np.nan)])

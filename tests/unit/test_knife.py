@@ -16,7 +16,7 @@ from wbc.errors import UnknownName
 
 EDGE = np.array([0.0, 0.0, -1.0])
 H = 1e-3
-SPEED = 0.1  # [m/s]
+SPEED = 0.2  # [m/s]
 
 
 def sliding(motion, tearing: float, friction: float = 0.0) -> np.ndarray:
@@ -132,7 +132,7 @@ def test_knife_beside_the_seam_cuts_muscle_and_feels_it(side):
     forces = rails.sweep(*straight(meat, 0.33, side * 0.02, half=0.04))
     assert rails.tissue.muscle_cut_length == pytest.approx(0.08, rel=1e-6)
     depth = meat.sheets.top - 0.33  # the knife drags the meat along, then cuts
-    assert -forces[-50:, 0].mean() == pytest.approx(1500.0 * depth, rel=0.15)
+    assert -forces[-25:, 0].mean() == pytest.approx(1500.0 * depth, rel=0.15)
     assert rails.tissue.links_cut_fraction == 0.0
 
 

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from robots import lwr4
 from sims.cutting.meat import Meat, Tissue, Toughness
 from sims.cutting.meat.flex import MaterialPoints
 from sims.cutting.meat.links import damage
 from sims.cutting.meat.sheets import Sheets
 from sims.cutting.meat.texture import fibres
 from tests.tolerances import ROUND_OFF
-from wbc.errors import InputError
+from wbc.errors import InputError, UnknownName
 
 FAR = np.array([0.0, 0.0, 1.0])
 
@@ -116,7 +119,11 @@ def test_damage_begins_at_the_onset_ends_at_twice_it_and_carries_no_more_than_th
 @pytest.mark.parametrize(
     "kind",
     [
+        lambda: Meat.generate(-1),
         lambda: Meat.generate(0, links=(1, 9)),
+        lambda: Meat.generate(0, links=(33.5, 9)),
+        lambda: replace(Meat.generate(0), young=0.0),
+        lambda: replace(Meat.generate(0), poisson=0.5),
         lambda: Meat.generate(0, place=(0.5, np.nan)),
         lambda: Toughness(seam=-1.0),
     ],
@@ -124,6 +131,41 @@ def test_damage_begins_at_the_onset_ends_at_twice_it_and_carries_no_more_than_th
 def test_nonsense_is_refused(kind):
     with pytest.raises(InputError):
         kind()
+
+
+def test_unknown_tool_is_refused_with_the_bodies_that_exist():
+    spec, meat = mujoco.MjSpec(), Meat.generate(0)
+    spec.worldbody.add_body(name="bracket")
+    meat.add_to(spec)
+    with pytest.raises(UnknownName, match="Did you mean 'bracket'"):
+        meat.attach(spec, "bracke", meat.grip, np.eye(3))
+    with pytest.raises(InputError, match="rotation"):
+        meat.attach(spec, "bracket", meat.grip, 2.0 * np.eye(3))
+
+
+def test_attached_points_of_tool_and_meat_coincide_at_the_start():
+    spec, meat = mujoco.MjSpec(), Meat.generate(0)
+    R = np.diag([-1.0, 1.0, -1.0])
+    p = meat.grip + np.array([0.0, 0.0, 0.22])
+    tool = spec.worldbody.add_body(name="bracket", pos=p, quat=[0, 0, 1, 0])
+    tool.add_geom(size=[0.01] * 3)
+    tool.add_freejoint()
+    meat.add_to(spec)
+    meat.attach(spec, "bracket", p, R)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert model.neq == 9
+    assert_allclose(data.efc_pos, 0.0, atol=ROUND_OFF)
+
+
+def test_keyframes_of_the_scene_go_and_its_time_step_stays():
+    spec = mujoco.MjSpec.from_string(lwr4.mjcf())
+    Meat.generate(0).add_to(spec)
+    model = spec.compile()
+    assert model.nkey == 0
+    assert model.opt.timestep == pytest.approx(1e-3)
+    assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_DISCRETE
 
 
 def test_a_seam_outside_the_meat_is_refused_with_its_place():

@@ -16,7 +16,7 @@ HALF = np.array([0.14, 0.10, 0.045])  # of a blob [m]
 
 
 def blob(
-    half=HALF, rings: int = 24, power: float = 0.5
+    half=HALF, rings: int = 16, power: float = 0.5
 ) -> tuple[np.ndarray, np.ndarray]:
     """A rounded box as a grid of longitudes and latitudes about x."""
     latitude = np.linspace(-np.pi / 2, np.pi / 2, rings + 1)[1:-1]

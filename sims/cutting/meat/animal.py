@@ -8,6 +8,7 @@ from typing import Final, final
 import numpy as np
 
 from sims.cutting.meat.sheets import Sheets
+from wbc import InputError
 from wbc.arrays import Array
 
 __all__ = ["Animal", "Field"]
@@ -87,7 +88,12 @@ class Animal:
         tension; strengths are those of perimysium times the factor 3 that Swatland
         (2006) found for aponeurosis. The seam's stiffness lets it open by about 5 mm
         under 100 N.
+
+        Raises:
+            InputError: a seed that is not a whole number from 0 on.
         """
+        if int(seed) != seed or seed < 0:
+            raise InputError(f"seed must be a whole number from 0 on, got {seed}.")
         rng = np.random.default_rng(seed)
         return cls(
             length=rng.uniform(0.26, 0.29),
@@ -96,7 +102,7 @@ class Animal:
             bend=rng.uniform(-1.0, 1.0, 3) * [0.012, 0.018, 0.004],
             tilt=rng.uniform(-1.0, 1.0, 3) * [0.004, 0.002, 0.001],
             hump=rng.uniform(-1.0, 1.0, 2) * 0.02,
-            young=rng.uniform(3.5e4, 7e4),
+            young=rng.uniform(3e4, 5.5e4),
             link_stiffness=rng.uniform(0.65e6, 1.0e6),
             strength=rng.uniform(6.5e4, 9e4),
             patches=(

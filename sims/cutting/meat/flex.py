@@ -7,7 +7,7 @@ from typing import Final, final
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sims.cutting.meat.sheets import Muscle
 from wbc.arrays import Array
@@ -88,8 +88,8 @@ def node_body(name: str, ix: int, iy: int, iz: int) -> str:
     return f"{PREFIX}{name}_{ix}_{iy}_{iz}"
 
 
-def _text(values: object) -> str:
-    return " ".join(repr(float(x)) if isinstance(x, float) else str(x) for x in values)  # type: ignore[attr-defined]
+def _text(values: ArrayLike) -> str:
+    return " ".join(str(x) for x in np.asarray(values).tolist())
 
 
 @final

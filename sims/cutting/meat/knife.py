@@ -81,7 +81,7 @@ class Knife:
 
     def edge(self, data: mujoco.MjData) -> Array:
         """Unit vector (3,) along the blade, out of the tip."""
-        return data.site_xmat[self._site, 2::3].copy()
+        return np.array(data.site_xmat[self._site, 2::3])
 
     def feel(self, data: mujoco.MjData, force: Array, point: Array) -> None:
         """Let a force (3,) [N] at a point (3,) act on the tool, and no other.

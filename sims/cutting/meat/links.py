@@ -56,10 +56,10 @@ class Links:
         """Links over the whole seam.
 
         Raises:
-            InputError: fewer than 2 by 2.
+            InputError: a grid that is not two whole numbers from 2 on.
         """
-        if min(grid) < 2:
-            raise InputError(f"links must be at least 2 by 2, got {grid}.")
+        if len(grid) != 2 or min(grid) < 2 or any(int(n) != n for n in grid):
+            raise InputError(f"links must be two whole numbers from 2 on, got {grid}.")
         u, w = (a.ravel() for a in np.meshgrid(*map(_middles, grid), indexing="ij"))
         points = sheets.on_seam(u, w)
         stiffer, stronger, *shifts = (field(u, w) for field in animal.patches)

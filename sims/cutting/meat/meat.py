@@ -17,7 +17,7 @@ from sims.cutting.meat.meshfile import read_surface
 from sims.cutting.meat.scan import Seam, sheets_of
 from sims.cutting.meat.sheets import Sheets
 from sims.cutting.meat.texture import fibres
-from wbc import InputError
+from wbc import InputError, UnknownName
 from wbc.arrays import Array, frozen, positive, rotation
 
 __all__ = ["Meat", "Toughness"]
@@ -73,6 +73,9 @@ class Meat:
         poisson: Poisson's ratio.
         damping: Rayleigh damping of the muscles [s].
         toughness: what it takes to cut.
+
+    Raises:
+        InputError: a modulus that is not positive, or an impossible Poisson's ratio.
     """
 
     sheets: Sheets
@@ -168,6 +171,11 @@ class Meat:
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the muscles to a scene, and choose the integrator that suits them.
 
+        That is "discrete", implicit in the stiffness and damping of the muscles. Under
+        "Euler" a step takes half the time, with the same results, for a modulus of up
+        to 6e4 Pa at a damping of 0.01 s, which generated meat does not reach; stiffer
+        meat shakes itself apart.
+
         Keyframes of the scene go: they know nothing of the muscles' coordinates.
         """
         for name, muscle in zip((HELD, PULLED), self.sheets.muscles(), strict=True):
@@ -205,13 +213,12 @@ class Meat:
             R: (3, 3) its orientation then.
 
         Raises:
-            InputError: there is no such body, or no pose.
+            UnknownName: there is no such body.
+            InputError: p and R are no pose.
         """
         tool = spec.body(body)
         if tool is None:
-            raise InputError(
-                f"there is no body '{body}' in the scene to hold the meat."
-            )
+            raise UnknownName("body", body, [b.name for b in spec.bodies])
         p, R = frozen(p, (3,), "p"), rotation(R, "R")
         nx, ny, nz = CELLS
         for ix in range(1, nx):

@@ -11,14 +11,14 @@ from sims.cutting.meat.animal import GRID
 from sims.cutting.meat.sheets import THINNEST, Sheets
 from sims.cutting.meat.surface import Surface
 from wbc import InputError
-from wbc.arrays import Array
+from wbc.arrays import Array, BoolArray
 
 __all__ = ["Seam", "sheets_of"]
 
 Seam: TypeAlias = Callable[[Array, Array], Array]
 """y = s(x, z) of the cutting surface, all (k,) [m], in the coordinates of the file."""
 
-FINE: Final = 61
+FINE: Final = 41
 """Heights at which a section is searched for the seam."""
 INSET: Final = 0.02
 """Share of the length that is left out at either end, where the meat is thin."""
@@ -121,28 +121,31 @@ def _values(seam: Seam, x: Array, z: Array) -> Array:
 def _cast(corners: Array, x: Array, z: Array) -> tuple[Array, Array]:
     """Least and greatest y (k,) of the surface on lines along y, NaN without any."""
     near, far = np.full(x.size, np.nan), np.full(x.size, np.nan)
-    flat, y = corners[:, :, ::2], corners[:, :, 1]
-    low, high = flat.min(axis=1), flat.max(axis=1)
-    for i in range(x.size):
-        p = np.array([x[i], z[i]])
-        found = np.flatnonzero(((low <= p) & (high >= p)).all(axis=1))
-        a = flat[found, 0]
-        ab, ac, ap = flat[found, 1] - a, flat[found, 2] - a, p - a
-        area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
-        upright = area == 0.0
-        safe = np.where(upright, 1.0, area)
-        u = (ap[:, 0] * ac[:, 1] - ap[:, 1] * ac[:, 0]) / safe
-        v = (ab[:, 0] * ap[:, 1] - ab[:, 1] * ap[:, 0]) / safe
-        hit = ~upright & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
-        if hit.any():
-            a_y = y[found[hit]]
-            u, v = u[hit], v[hit]
-            ys = a_y[:, 0] * (1 - u - v) + a_y[:, 1] * u + a_y[:, 2] * v
-            near[i], far[i] = ys.min(), ys.max()
+    low, high = corners[:, :, 0].min(axis=1), corners[:, :, 0].max(axis=1)
+    for column in np.unique(x):
+        crossed = corners[(low <= column) & (high >= column)]
+        for i in np.flatnonzero(x == column):
+            ys = _hits(crossed, np.array([column, z[i]]))
+            if ys.size:
+                near[i], far[i] = ys.min(), ys.max()
     return near, far
 
 
-def _longest(flags: Array) -> tuple[int, int]:
+def _hits(corners: Array, p: Array) -> Array:
+    """Heights y of triangles (k, 3, 3) that contain the point (x, z) = p (2,)."""
+    a = corners[:, 0, ::2]
+    ab, ac, ap = corners[:, 1, ::2] - a, corners[:, 2, ::2] - a, p - a
+    area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    upright = area == 0.0
+    safe = np.where(upright, 1.0, area)
+    u = (ap[:, 0] * ac[:, 1] - ap[:, 1] * ac[:, 0]) / safe
+    v = (ab[:, 0] * ap[:, 1] - ab[:, 1] * ap[:, 0]) / safe
+    hit = ~upright & (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
+    weights = np.stack([1.0 - u - v, u, v], axis=1)[hit]
+    return np.asarray((weights * corners[hit, :, 1]).sum(axis=1))
+
+
+def _longest(flags: BoolArray) -> tuple[int, int]:
     """First index and end of the longest run of true values."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
     if not edges.size:

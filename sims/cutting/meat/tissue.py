@@ -59,6 +59,7 @@ class Tissue:
             for name, points in zip((HELD, PULLED), meat.links.ends, strict=True)
         )
         self._knife = None if knife is None else Knife(model, knife)
+        self._incision = Incision(meat, self._width)
         links = meat.links
         self._rest = links.rest
         self._step = float(model.opt.timestep)
@@ -72,7 +73,6 @@ class Tissue:
         n = self.meat.links.count
         self._alive, self._cut = np.ones(n, dtype=bool), np.zeros(n, dtype=bool)
         self._damage = np.zeros(n)
-        self._incision = Incision(self.meat, self._width)
         self._muscle_cut_length = 0.0
         self._indentation = Indentation()
         self._knife_force = np.zeros(3)
