@@ -9,6 +9,8 @@ import numpy as np
 
 from wbc import InputError, UnknownName
 from wbc.arrays import Array, positive
+from wbc.compiled import compiled, inner
+from wbc.frames import cross_into
 
 __all__ = ["WristSensor"]
 
@@ -97,9 +99,7 @@ class WristSensor:
                 "between a body without joints and its parent."
             )
         self._dt = model.opt.timestep
-        self._addresses = {
-            part: int(model.sensor(self._part(part)).adr[0]) for part in PARTS
-        }
+        self._begin = int(model.sensor(self._part("force")).adr[0])
         self._mass, self._centre, self._inertia = _tool(model, body, self._id)
 
     def reset(self, data: mujoco.MjData) -> None:
@@ -131,36 +131,63 @@ class WristSensor:
         The engine's acceleration of a frame is a - g already.
         """
         R = data.site_xmat[self._id].reshape(3, 3)
-        a, alpha = (
-            self._data(data, "linear acceleration"),
-            self._data(data, "angular acceleration"),
-        )
-        omega = self._data(data, "angular velocity")
-        c, I_W = R @ self._centre, R @ self._inertia @ R.T
-        at_centre = a + _cross(alpha, c) + _cross(omega, _cross(omega, c))
-        force = self._mass * at_centre
-        spin = I_W @ alpha + _cross(omega, I_W @ omega)
-        moment = _cross(c, force) + spin
-        return np.concatenate(
-            [
-                R @ self._data(data, "force") - force,
-                R @ self._data(data, "torque") - moment,
-            ]
-        )
-
-    def _data(self, data: mujoco.MjData, part: str) -> Array:
-        begin = self._addresses[part]
-        return data.sensordata[begin : begin + 3]
+        feel = data.sensordata[self._begin : self._begin + 3 * len(PARTS)]
+        return _exerted(R, feel, self._mass, self._centre, self._inertia)
 
     def _part(self, part: str) -> str:
         return f"{self.name} {part}"
 
 
-def _cross(a: Array, b: Array) -> Array:
-    """A x b; numpy's own takes twenty times as long for two vectors."""
-    a0, a1, a2 = a.tolist()
-    b0, b1, b2 = b.tolist()
-    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+@compiled
+def _exerted(
+    R: Array, feel: Array, mass: float, centre: Array, inertia: Array
+) -> Array:
+    """Wrench (6,) on the surroundings, world axes.
+
+    Args:
+        R: (3, 3) orientation of the site.
+        feel: (15,) what the engine reads there, in the order of `PARTS`: force and
+            torque in site axes, the others in world axes.
+        mass: of the tool.
+        centre: (3,) of its mass, site axes.
+        inertia: (3, 3) about it, site axes.
+    """
+    c, lever, swing = np.zeros(3), np.zeros(3), np.zeros(3)
+    force, moment, spin, out = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(6)
+    a, alpha, omega = feel[6:9], feel[9:12], feel[12:15]
+    _turn(R, centre, c)
+    cross_into(omega, c, lever)
+    cross_into(omega, lever, swing)
+    cross_into(alpha, c, lever)
+    for i in range(3):
+        force[i] = mass * (a[i] + lever[i] + swing[i])
+    cross_into(c, force, moment)
+    _spin(R, inertia, alpha, lever)
+    _spin(R, inertia, omega, swing)
+    cross_into(omega, swing, spin)
+    _turn(R, feel[0:3], c)
+    _turn(R, feel[3:6], out[3:])
+    for i in range(3):
+        out[i] = c[i] - force[i]
+        out[3 + i] -= moment[i] + lever[i] + spin[i]
+    return out
+
+
+@inner
+def _turn(R: Array, x: Array, out: Array) -> None:
+    """Out = R x."""
+    for i in range(3):
+        out[i] = R[i, 0] * x[0] + R[i, 1] * x[1] + R[i, 2] * x[2]
+
+
+@inner
+def _spin(R: Array, inertia: Array, omega: Array, out: Array) -> None:
+    """Out = R I R^T omega."""
+    local, spun = np.zeros(3), np.zeros(3)
+    for i in range(3):
+        local[i] = R[0, i] * omega[0] + R[1, i] * omega[1] + R[2, i] * omega[2]
+    _turn(inertia, local, spun)
+    _turn(R, spun, out)
 
 
 def _both(force: float, torque: float, what: str) -> Array:

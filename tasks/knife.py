@@ -10,14 +10,17 @@ from numpy.typing import ArrayLike
 from tasks.base import CatalogueTask, run_kernel
 from tasks.evaluator import Code
 from wbc import PD, FrameState, Kernel, Robot, Rows, State
-from wbc.arrays import Array, frozen, rotation
-from wbc.errors import UnknownName
+from wbc.arrays import ROTATION_TOLERANCE, Array
+from wbc.errors import InputError, UnknownName
 from wbc.kernel import NO_TABLE
 
 __all__ = ["KnifePose"]
 
 STILL = np.zeros(6)
 STILL.flags.writeable = False
+IDENTITY = np.eye(3)
+SHAPES = ((3,), (3, 3), (6,), (6,))
+WHAT = ("position", "orientation", "twist", "acceleration")
 NORMAL, ACROSS, DOWN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
@@ -84,12 +87,20 @@ class KnifePose(CatalogueTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(position, (3,), "target of the knife")
-        R = rotation(orientation, "target of the knife")
-        V = frozen(twist, (6,), "target twist of the knife")
-        A = frozen(acceleration, (6,), "target acceleration of the knife")
-        self._parameters[:] = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
-        self._axis[9:] = np.concatenate([R[:, 1], V[3:], A[3:]])
+        p, R, V, A = map(np.asarray, (position, orientation, twist, acceleration))
+        for array, shape, what in zip((p, R, V, A), SHAPES, WHAT, strict=True):
+            if array.shape != shape:
+                raise InputError(
+                    f"target {what} of '{self.name}' has shape {array.shape}; it must "
+                    f"be {shape}."
+                )
+        target = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
+        if not np.isfinite(target).all():
+            raise InputError(f"target of '{self.name}' must be finite, got {target}.")
+        if np.abs(R @ R.T - IDENTITY).max() > ROTATION_TOLERANCE or _turned(R) < 0.0:
+            raise InputError(f"orientation of '{self.name}' is no rotation: {R}.")
+        self._parameters[:] = target
+        self._axis[9:12], self._axis[12:15], self._axis[15:] = R[:, 1], V[3:], A[3:]
 
     def parameters(self, robot: Robot) -> Array:
         """Those of `FramePose`, live."""
@@ -97,10 +108,8 @@ class KnifePose(CatalogueTask):
         return self._parameters
 
     def kernel(self, robot: Robot) -> Kernel | None:
-        """The compiled half, where neither sensor nor freedom needs Python."""
-        if self.rocking or self.sensor is not None:
-            return None
-        return super().kernel(robot)
+        """The compiled half; none for a rocking blade, with its rows of two kernels."""
+        return None if self.rocking else super().kernel(robot)
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
@@ -121,6 +130,12 @@ class KnifePose(CatalogueTask):
             raise UnknownName("force sensor", self.sensor, state.wrenches)
         F: FrameState = state.frame(self.frames[1])
         torque += F.J.T @ measured
+
+
+def _turned(R: Array) -> float:
+    """Determinant of R (3, 3): -1 for a mirror image."""
+    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
+    return float(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

@@ -94,7 +94,7 @@ class Stack:
         self._python = [term for term in self.terms if term.kernel is None]
         self._advancing = [
             term.task
-            for term in self._python
+            for term in self.terms
             if type(term.task).advance is not Task.advance
         ]
         self._writer: RowsWriter | None = None
