@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, final, get_args
+from typing import Final, Literal, TypeAlias, final, get_args
 
 from sims.cutting.live import Sight
 from sims.cutting.timelaw import Motion
@@ -11,7 +11,14 @@ from wbc.arrays import positive
 
 __all__ = ["Correction", "Experiment"]
 
+SLOW: Final = 0.015
+"""Forward speed at which half of the line's own motion is fed forward [m/s]."""
+
 Experiment: TypeAlias = Literal["local", "initial", "printed"]
+
+
+SHARES: Final[dict[Experiment, float]] = {"local": 1.0, "printed": 0.5, "initial": 0.0}
+"""Of y_g - y_d, where each settles."""
 
 
 @final
@@ -23,7 +30,9 @@ class Correction:
     - "printed": Delta y = y_g - y_c as in eq. (19). Fed with the knife's own y_c,
       it settles half-way between the planned and the live line.
 
-    Delta y is followed by a critically damped second-order filter.
+    Delta y is followed by a critically damped second-order filter. The live line's own
+    motion is fed forward by as much as the knife moves forward: one that hardly does
+    drags the meat along sideways, and would chase a line that flees from it.
 
     Args:
         experiment: which.
@@ -40,9 +49,15 @@ class Correction:
         self._quickness = positive(quickness, "quickness")
         self.restart()
 
-    def restart(self) -> None:
-        """Begin again at zero."""
-        self._value = self._rate = 0.0
+    def restart(self, offset: float = 0.0) -> float:
+        """Begin again, and return Delta y: where it would settle.
+
+        Args:
+            offset: y_g - y_d at the start [m].
+        """
+        self._value = SHARES[self.experiment] * offset
+        self._rate = 0.0
+        return self._value
 
     def tick(
         self, dt: float, seen: Sight | None, planned: Motion, knife_y: float, xd: float
@@ -72,5 +87,5 @@ class Correction:
             return self._value, 0.0
         if self.experiment == "printed":
             return seen.y - knife_y, 0.0
-        rate = seen.rate + seen.slope * xd - planned.rate
+        rate = seen.rate * abs(xd) / (abs(xd) + SLOW) + seen.slope * xd - planned.rate
         return seen.y - planned.value, rate

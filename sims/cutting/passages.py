@@ -123,16 +123,17 @@ class Passages:
         line = surface.fit(self.depth, low, high, plan.order)
         self.lines.append(line)
         self._stroke = Stroke(line, low, high, plan.stroke)
-        start = self._start
+        self._offset = float(surface.line(low, self.depth)[0]) - line.at(low).y
+        start = self._entry()
         above = np.array([*start[0][:2], plan.height])
         self._begin("over", above, start[1], plan.travel)
 
-    @property
-    def _start(self) -> tuple[Array, float]:
+    def _entry(self) -> tuple[Array, float]:
         """Where the stroke begins, and its heading."""
         line, x = self._stroke.curve, self._stroke.start
         theta = math.atan(line.at(x).y1)
-        return np.array([x, line.at(x).y, self.depth]), theta
+        y = line.at(x).y + self.correction.restart(self._offset)
+        return np.array([x, y, self.depth]), theta
 
     def _begin(self, phase: Phase, p: Array, theta: float, duration: float) -> None:
         self.phase = phase
@@ -147,11 +148,10 @@ class Passages:
         if self._clock.time < glide.duration:
             return
         if self.phase == "over":
-            self._begin("down", *self._start, self.plan.lift)
+            self._begin("down", *self._entry(), self.plan.lift)
         elif self.phase == "down":
             self.phase = "stroke"
             self._clock.restart()
-            self.correction.restart()
             self._live.forget()
         elif self.index == self._last:
             self.phase = "done"

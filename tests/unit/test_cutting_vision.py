@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from sims.cutting.camera import Camera, Frame
-from sims.cutting.correction import Correction
+from sims.cutting.correction import SLOW, Correction
 from sims.cutting.guide import GuideSurface
 from sims.cutting.live import LiveGuide, Sight
 from sims.cutting.polynomial import Polynomial
@@ -330,13 +330,32 @@ def test_where_the_update_settles(experiment, settles):
     assert knife == pytest.approx(settles, abs=1e-6)
 
 
-def test_the_update_follows_a_moving_line_without_lag():
-    update = Correction("local")
+def test_the_update_follows_a_moving_line_with_the_lag_of_what_is_not_fed_forward():
+    update, quickness = Correction("local", 50.0), 50.0
     for k in range(2000):
         seen = Sight(SEEN + 0.02 * k * 1e-3, 0.2, 0.01)
         planned = Motion(PLANNED + 0.2 * 0.05 * k * 1e-3, 0.2 * 0.05, 0.0)
         delta = update.tick(1e-3, seen, planned, 0.0, 0.05)
-    assert delta.value == pytest.approx(seen.y - planned.value, abs=1e-5)
+    lag = 0.01 * SLOW / (0.05 + SLOW) * 2.0 / quickness
+    assert delta.value == pytest.approx(seen.y - planned.value - lag, abs=1e-6)
+
+
+def test_a_line_that_the_knife_drags_along_is_not_chased():
+    """The seam follows the knife and creeps back within 0.2 s: it must not run away."""
+    update, rest, line, knife = Correction("local"), SEEN, SEEN, PLANNED
+    for _ in range(4000):
+        seen = Sight(line, 0.0, 0.0)
+        before = knife
+        delta = update.tick(1e-3, seen, Motion(PLANNED, 0.0, 0.0), knife, 0.005)
+        knife = PLANNED + delta.value
+        line += (knife - before) - 1e-3 / 0.2 * (line - rest)
+    assert knife == pytest.approx(rest, abs=1e-5)
+
+
+@pytest.mark.parametrize(("experiment", "share"), [("local", 1.0), ("printed", 0.5)])
+def test_an_update_can_begin_where_it_would_settle(experiment, share):
+    assert Correction(experiment).restart(0.004) == pytest.approx(0.004 * share)
+    assert Correction("initial").restart(0.004) == 0.0
 
 
 def test_an_update_that_sees_nothing_holds():
