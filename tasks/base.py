@@ -9,6 +9,7 @@ import numpy as np
 from tasks.evaluator import SCRATCH, Code, evaluate, write_rows
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
+from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE
 
@@ -73,7 +74,7 @@ def run_kernel(
         int(code),
         parameters,
         table,
-        frame_at(np.zeros(frame_size(n)), n) if F is None else F,
+        python(frame_at)(np.zeros(frame_size(n)), n) if F is None else F,
         state.q,
         state.v,
         state.t,

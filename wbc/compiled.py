@@ -19,7 +19,7 @@ from typing import Any, Final, TypeVar, cast
 
 import numba
 
-__all__ = ["announce", "compiled", "inner"]
+__all__ = ["announce", "compiled", "inner", "python"]
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -61,19 +61,27 @@ CACHE: Final = _cache_folder()
 def compiled(function: Function) -> Function:
     """Compile a function at its first call, for the argument types of that call.
 
-    Kernels read the arrays that they loop over into local names first: each access
-    through a tuple of arrays counts references, in a loop again and again.
+    It may neither allocate nor return arrays, and calls only `inner` functions. Then
+    references to its arrays need no counting, which in small kernels is most of the
+    work. (Assigning an array to a slice of another allocates, in case they overlap.)
     """
-    return _compile(function)
+    return _compile(function, cache=CACHE is not None)
 
 
 def inner(function: Function) -> Function:
-    """Compile a function that only compiled ones call.
+    """Compile a function, under the same rules, that only compiled ones call.
 
-    Without the door for calls from Python, which for tuples of arrays is larger than
-    many a function behind it, compilation takes half as long.
+    It has no door for calls from Python, which for tuples of arrays is larger than
+    many a function behind it; what calls it keeps its code in the cache.
     """
-    return _compile(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return _compile(
+        function, cache=False, no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )
+
+
+def python(function: Function) -> Function:
+    """The Python function behind a compiled one."""
+    return cast(Function, getattr(function, "py_func", function))
 
 
 def _compile(function: Function, **options: Any) -> Function:
@@ -81,7 +89,7 @@ def _compile(function: Function, **options: Any) -> Function:
     SETTINGS.CACHE_DIR = elsewhere or str(CACHE or "")
     try:
         compile_it: Any = numba.njit(
-            cache=CACHE is not None, fastmath=ALLOWED, error_model="numpy", **options
+            fastmath=ALLOWED, error_model="numpy", _nrt=False, **options
         )
         return cast(Function, compile_it(function))
     finally:

@@ -6,44 +6,49 @@ the Data lives. A kernel that is given the addresses once needs no call per arra
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
+from numba.np import arrayobj
 
 from wbc.arrays import Array
-from wbc.compiled import inner
 from wbc.errors import InputError
 
 __all__ = ["address_of", "floats_at"]
 
-
-_float64: Any = types.float64
-_pointer_type: Any = types.CPointer  # numba has no annotations
-_view: Any = numba.carray  # type: ignore[attr-defined] # nor a list of its exports
+_types: Any = types  # numba has no annotations
+_arrays: Any = arrayobj
 
 
 @intrinsic
-def _as_pointer(typing_context: Any, address: Any) -> Any:
-    """The address as a pointer to float64."""
-    del typing_context, address
+def _view(typing_context: Any, address: Any, count: Any) -> Any:
+    """An array that owns nothing; a compiled function must not return it."""
+    del typing_context, address, count
+    vector = _types.Array(_types.float64, 1, "C")
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        target = context.get_value_type(signature.return_type)
-        return builder.inttoptr(arguments[0], target)
+        address, count = arguments
+        array = context.make_array(vector)(context, builder)
+        word = context.get_constant(_types.intp, 8)
+        _arrays.populate_array(
+            array,
+            data=builder.inttoptr(address, array.data.type),
+            shape=cgutils.pack_array(builder, [count]),
+            strides=cgutils.pack_array(builder, [word]),
+            itemsize=word,
+            meminfo=None,
+        )
+        return array._getvalue()
 
-    return _pointer_type(_float64)(types.int64), generate
+    return vector(_types.intp, _types.intp), generate
 
 
-_pointer: Any = _as_pointer
-
-
-@inner
-def floats_at(address: int, count: int) -> Array:
-    """The float64 numbers (count,) that start at an address; nothing is copied."""
-    return _view(_pointer(address), (count,))  # type: ignore[no-any-return]
+floats_at: Callable[[int, int], Array] = _view
+"""The float64 numbers (count,) that start at an address; nothing is copied."""
 
 
 def address_of(view: Array) -> int:
