@@ -13,7 +13,7 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
@@ -24,6 +24,7 @@ __all__ = ["announce", "compiled", "inner", "python"]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 SETTINGS: Any = numba.config
+UNLITERAL: Any = numba.types.unliteral
 ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 """Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
 
@@ -88,12 +89,23 @@ def _compile(function: Function, **options: Any) -> Function:
     elsewhere = SETTINGS.CACHE_DIR
     SETTINGS.CACHE_DIR = elsewhere or str(CACHE or "")
     try:
-        compile_it: Any = numba.njit(
-            fastmath=ALLOWED, error_model="numpy", _nrt=False, **options
-        )
-        return cast(Function, compile_it(function))
+        njit: Any = numba.njit  # typed without the options that are not for everyone
+        compile_it = njit(fastmath=ALLOWED, error_model="numpy", _nrt=False, **options)
+        return cast(Function, _one_version(compile_it(function)))
     finally:
         SETTINGS.CACHE_DIR = elsewhere
+
+
+def _one_version(kernel: Any) -> Any:
+    """Let constants in a call count as numbers; numba compiles anew for each."""
+    find = kernel.get_call_template
+
+    def find_for_types(args: Any, kws: Mapping[str, Any]) -> Any:
+        named = {name: UNLITERAL(kind) for name, kind in kws.items()}
+        return find(tuple(UNLITERAL(kind) for kind in args), named)
+
+    kernel.get_call_template = find_for_types
+    return kernel
 
 
 def announce(kernel: Any, what: str) -> None:

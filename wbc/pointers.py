@@ -6,7 +6,6 @@ the Data lives. A kernel that is given the addresses once needs no call per arra
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,48 +14,60 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np import arrayobj
 
-from wbc.arrays import Array
+from wbc.arrays import Array, IntArray
 from wbc.errors import InputError
 
-__all__ = ["address_of", "floats_at"]
+__all__ = ["address_of", "floats_at", "integers_at"]
+
+WORD = 8
 
 _types: Any = types  # numba has no annotations
 _arrays: Any = arrayobj
+_tools: Any = cgutils
 
 
-@intrinsic
-def _view(typing_context: Any, address: Any, count: Any) -> Any:
-    """An array that owns nothing; a compiled function must not return it."""
-    del typing_context, address, count
-    vector = _types.Array(_types.float64, 1, "C")
+def _view_of(kind: Any) -> Any:
+    """An intrinsic: the numbers of this kind at an address, as an array."""
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        address, count = arguments
-        array = context.make_array(vector)(context, builder)
-        word = context.get_constant(_types.intp, 8)
-        _arrays.populate_array(
-            array,
-            data=builder.inttoptr(address, array.data.type),
-            shape=cgutils.pack_array(builder, [count]),
-            strides=cgutils.pack_array(builder, [word]),
-            itemsize=word,
-            meminfo=None,
-        )
-        return array._getvalue()
+    def type_it(typing_context: Any, address: Any, count: Any) -> Any:
+        del typing_context, address, count
+        vector = _types.Array(kind, 1, "C")
 
-    return vector(_types.intp, _types.intp), generate
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            del signature
+            address, count = arguments
+            array = context.make_array(vector)(context, builder)
+            word = context.get_constant(_types.intp, WORD)
+            _arrays.populate_array(
+                array,
+                data=builder.inttoptr(address, array.data.type),
+                shape=_tools.pack_array(builder, [count]),
+                strides=_tools.pack_array(builder, [word]),
+                itemsize=word,
+                meminfo=None,
+            )
+            return array._getvalue()
+
+        return vector(_types.intp, _types.intp), generate
+
+    return intrinsic(type_it)
 
 
-floats_at: Callable[[int, int], Array] = _view
-"""The float64 numbers (count,) that start at an address; nothing is copied."""
+floats_at: Any = _view_of(_types.float64)
+"""(address, count) -> the float64 numbers (count,) there; nothing is copied.
+
+The array owns nothing, and a compiled function must not return it.
+"""
+integers_at: Any = _view_of(_types.intp)
+"""The same for integers."""
 
 
-def address_of(view: Array) -> int:
+def address_of(view: Array | IntArray) -> int:
     """Where an array begins; whoever takes the address must keep the array alive.
 
     Raises:
-        InputError: not float64, or not contiguous.
+        InputError: neither float64 nor integers, or not contiguous.
     """
-    if view.dtype != np.float64 or not view.flags.forc:
-        raise InputError("a kernel reads contiguous arrays of float64 only.")
+    if view.dtype not in (np.float64, np.intp) or not view.flags.forc:
+        raise InputError("a kernel reads contiguous arrays of float64 or intp only.")
     return int(view.ctypes.data)
