@@ -142,11 +142,7 @@ def write_rows(
         p = floats_at(program[k, 4], program[k, 5])
         table = floats_at(program[k, 6], program[k, 7])
         out.rate[:] = 0.0
-        flat = blocks[max(program[k, 1], 0)]
-        if program[k, 8] != -1:
-            flat = scratch[2]
-            _see(program[k], blocks, scratch, t, n)
-        F = frame_at(flat, n)
+        F = _seen(program[k], blocks, scratch, t, n)
         evaluate(code, p, table, F, q, v, t, dt, scratch[0], out)
         for i in range(begin, end):
             if gains[0, i] >= 0.0:
@@ -157,11 +153,17 @@ def write_rows(
 
 
 @inner
-def _see(entry: IntArray, blocks: Array, scratch: Array, t: float, n: int) -> None:
-    """The task's frame as seen from its second one, into the third row of scratch."""
+def _seen(
+    entry: IntArray, blocks: Array, scratch: Array, t: float, n: int
+) -> FrameState:
+    """The frame that a task reads, as seen from its second one if it has two."""
+    first, second = entry[1], entry[8]
+    if second == -1:
+        return frame_at(blocks[first], n)
     by_itself = scratch[3]
     if entry[9] != 0:
         moved(floats_at(entry[9], MOVING_SIZE), t, by_itself)
-    F = by_itself if entry[1] == -2 else blocks[entry[1]]
-    G = by_itself if entry[8] == -2 else blocks[entry[8]]
+    F = by_itself if first == -2 else blocks[first]
+    G = by_itself if second == -2 else blocks[second]
     relative(F, G, scratch[2], scratch[1], n)
+    return frame_at(scratch[2], n)
