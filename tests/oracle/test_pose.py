@@ -12,13 +12,16 @@ from tests.arms import HOME, LOWER, UPPER, seven_axis, six_axis, two_arms, two_l
 from tests.catalogue import random_rotation
 from tests.tolerances import BRUTE_FORCE, POSE
 from wbc import (
+    HierarchicalQP,
     Hierarchy,
     InputError,
+    NullSpace,
     Robot,
     SolverError,
     State,
     UnknownName,
     allocate_rows,
+    resolve,
 )
 from wbc import solve_pose as solve
 
@@ -243,6 +246,34 @@ def test_the_rim_grasp_has_seven_rows_rank_five_and_one_degree_left(seed):
     assert (level.rows, level.rank, analysis.free) == (7, 5, 1)
     assert len(level.redundant) == 2
     assert level.conflicts == ()
+
+
+@pytest.mark.parametrize(
+    "resolver", [HierarchicalQP(), NullSpace()], ids=lambda r: r.name
+)
+def test_the_rim_is_approached_without_chatter_and_leaves_the_posture_its_freedom(
+    resolver,
+):
+    """Redundant rows that were so only at the grasp asked for 200 rad/s^2 near it."""
+    robot, dt = six_axis(), 2e-3
+    rim = tasks.rim_grasp("torch_tip", tasks.Cylinder([0.8, 0.1, 0.4], Z, 0.04))
+    grasp = solve(robot, rim, quick=True).q
+    q = grasp + 1e-4 * np.random.default_rng(1).normal(size=6)
+    v, largest = np.zeros(6), 0.0
+    turned = tasks.Posture(grasp + 0.3 * np.eye(6)[0])
+    for _ in range(500):
+        a = resolve(robot.state(q, v), rim >> turned, resolver).acceleration
+        largest = max(largest, float(np.abs(a).max()))
+        v = v + dt * a
+        q = q + dt * v
+    state = robot.state(q)
+    assert largest < 3.0
+    assert np.linalg.norm(v) < 0.01
+    assert np.linalg.norm(q - grasp) > 0.02  # along the rim, towards the posture
+    for task, _ in rim.terms:
+        rows = allocate_rows(len(task.row_names(robot)), 6)
+        task.update(state, rows)
+        assert np.abs(rows.error).max() < 1e-6
 
 
 def test_two_arms_meet():
