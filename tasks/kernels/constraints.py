@@ -24,6 +24,9 @@ __all__ = ["constraint"]
 
 SINGULAR = 1e-9
 """Below this distance [m], or sine, any direction serves as well as another."""
+CLOSE = 0.01
+"""Share of the wanted distance, or sine, below which the curvature no longer grows: on
+the axis it is infinite, and who passes there must not be thrown about."""
 
 
 @inner
@@ -144,9 +147,8 @@ def _apart(
         u[k] = u[k] / length if length > SINGULAR else p[12 + 3 * first + k]
     _along(u, motion, J_S, out, row)
     out.error[row] = length - p[4]
-    if length > SINGULAR:
-        rate = out.rate[row]
-        out.drift[row] += max(speed - rate * rate, 0.0) / length
+    rate, least = out.rate[row], max(length, CLOSE * p[4])
+    out.drift[row] += max(speed - rate * rate, 0.0) * length / (least * least)
 
 
 @inner
@@ -185,8 +187,10 @@ def _angle(p: Array, S: FrameState, scratch: Array, out: Rows, row: int) -> None
             c[i] /= sine
         _turning(c, S.V, S.drift, S.J, out, row)
         inward = c[0] * B[3] + c[1] * B[4] + c[2] * B[5]
+        least = max(sine, CLOSE * np.sin(p[5]))
         for i in range(3):
-            out.drift[row] += (B[3 + i] - inward * c[i]) / sine * S.V[3 + i]
+            turned = (B[3 + i] - inward * c[i]) * sine / (least * least)
+            out.drift[row] += turned * S.V[3 + i]
     out.error[row] = np.arctan2(sine, cosine) - p[5]
 
 

@@ -191,6 +191,26 @@ def test_a_conveyor_goes_on_and_a_turntable_turns():
     assert np.linalg.norm(found) == pytest.approx(np.linalg.norm(error))
 
 
+@pytest.mark.parametrize("away", [0.0, 1e-12, 1e-8, 1e-5, 1e-3])
+def test_passing_an_axis_asks_for_no_more_than_a_share_of_the_radius_does(away):
+    """v^2 / length would be 1e12 m/s^2 at the worst of these."""
+    state = home(np.linspace(-1.0, 1.0, 7))
+    F = state.frame(TIP)
+    speed = float(np.linalg.norm(F.V[:3]))
+    for task in (
+        tasks.PointOnCircle(TIP, tasks.Circle(F.p + away * X, Z, 0.1)),
+        tasks.DistanceToPoint(TIP, F.p + away * X, 0.1),
+        tasks.DistanceToLine(TIP, tasks.Line(F.p + away * X, Z), 0.1),
+    ):
+        drift = rows_of(task, state).drift[-1]
+        assert abs(drift) < np.linalg.norm(F.drift[:3]) + speed**2 / (0.01 * 0.1)
+    n = F.R @ (np.cos(away) * Z + np.sin(away) * X)
+    tool = tasks.Line(np.zeros(3), Z, on=TIP)
+    drift = rows_of(tasks.PerpendicularLines(tool, tasks.Line(X, n)), state).drift
+    spin = float(np.linalg.norm(F.V[3:]))
+    assert abs(drift[0]) < np.linalg.norm(F.drift[3:]) + spin**2 / 0.01
+
+
 # ------------------------------------------------------------------------- the rim
 
 
