@@ -126,7 +126,7 @@ def test_a_row_of_zeros_keeps_its_slack():
 
 def test_too_few_iterations_are_admitted():
     levels = problem(1)
-    solver = solver_for(levels)
-    solver._most = 1
+    sizes, n = [low.size for _, low, _ in levels], levels[0][0].shape[1]
+    solver = Lexicographic(sizes, n, most=1)
     assert not solver.solve(*stacked(levels))
     assert np.isfinite(solver.x).all()
