@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.geometry.constraint import expect
 from tasks.geometry.distances import DistanceToLine, DistanceToPlane
 from tasks.geometry.features import Cylinder, Line, Plane
 from tasks.geometry.lines import LineInPlane, ParallelLines, PerpendicularLines
@@ -54,6 +55,7 @@ def rim_grasp(
     Raises:
         InputError: axes that are not at a right angle, an unusable number or gain.
     """
+    expect(Cylinder, cylinder)
     b1, b2 = unit(approach, "approach"), unit(closing, "closing")
     if abs(b1 @ b2) > 1e-6:
         raise InputError("approach and closing of a gripper must be at a right angle.")

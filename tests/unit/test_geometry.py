@@ -293,6 +293,35 @@ def test_a_degenerate_feature_is_refused_by_its_name(make, offender):
         make()
 
 
+def test_a_feature_of_another_kind_is_refused_by_what_is_needed():
+    line, plane = tasks.Line(X, Z), tasks.Plane(X, Z)
+    for make, kind in (
+        (lambda: tasks.PointOnLine(TIP, plane), "a Line, not Plane"),
+        (lambda: tasks.PointOnPlane(TIP, line), "a Plane, not Line"),
+        (lambda: tasks.PointOnCircle(TIP, plane), "a Circle, not Plane"),
+        (lambda: tasks.PointOnCylinder(TIP, line), "a Cylinder, not Line"),
+        (lambda: tasks.DistanceToLine(TIP, [1, 0, 0], 0.1), "a Line, not list"),
+        (lambda: tasks.LineInPlane(plane, plane), "a Line, not Plane"),
+        (lambda: tasks.ParallelLines(line, TIP), "a Line, not str"),
+        (lambda: tasks.PlaneOnPlane(plane, line), "a Plane, not Line"),
+        (lambda: tasks.rim_grasp(TIP, line), "a Cylinder, not Line"),
+    ):
+        with pytest.raises(InputError, match=kind):
+            make()
+    with pytest.raises(InputError, match="point of 'tip on point' is not an array"):
+        tasks.PointOnPoint(TIP, plane)
+
+
+def test_a_cylinder_has_an_axis_and_a_rim_and_a_circle_a_plane():
+    cylinder = tasks.Cylinder(X, 2.0 * Z, 0.1, on=TIP)
+    assert_allclose(cylinder.axis.direction, Z)
+    assert cylinder.rim.radius == 0.1
+    circle = cylinder.rim
+    assert_allclose(circle.plane.normal, Z)
+    assert_allclose(circle.axis.point, X)
+    assert {cylinder.axis.on, circle.on, circle.plane.on, circle.axis.on} == {TIP}
+
+
 def test_a_relation_that_no_joint_can_change_is_refused():
     with pytest.raises(InputError, match="no joint moves any"):
         tasks.PointOnPoint(tasks.Point(X), Y)
