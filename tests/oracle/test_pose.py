@@ -12,9 +12,11 @@ from tests.arms import HOME, LOWER, UPPER, seven_axis, six_axis, two_arms, two_l
 from tests.catalogue import random_rotation
 from tests.tolerances import BRUTE_FORCE, POSE
 from wbc import (
+    PD,
     HierarchicalQP,
     Hierarchy,
     InputError,
+    MotionTask,
     NullSpace,
     Robot,
     SolverError,
@@ -334,11 +336,13 @@ def test_a_start_outside_the_limits_leads_inside():
     assert 0.2 <= result.q[1] <= 1.0
 
 
-class Broken(tasks.geometry.Constraint):
-    ROWS = (("x", "m"),)
+class Broken(MotionTask):
+    def __init__(self, error: float) -> None:
+        super().__init__("broken", "m", ("x",), PD(1.0))
+        self.error = error
 
     def evaluate(self, state: State, out) -> None:
-        out.error[:] = np.nan
+        out.error[:] = self.error
 
 
 def test_bad_input_is_refused_by_name():
@@ -355,6 +359,6 @@ def test_bad_input_is_refused_by_name():
         solve(arm, goal, attempts=0)
     with pytest.raises(UnknownName, match="unknown frame 'tipp'"):
         solve(arm, tasks.PointOnPoint("tipp", X))
-    broken = Broken("tip", None, np.zeros(34), "broken", 1.0, None)
-    with pytest.raises(SolverError, match="'broken' wrote a row that is not finite"):
-        solve(arm, broken)
+    for error in (np.nan, np.inf):
+        with pytest.raises(SolverError, match="'broken' wrote a row 'x' that is not"):
+            solve(arm, goal >> Broken(error))
