@@ -202,6 +202,19 @@ def test_a_saturated_pd_is_a_pd_up_close_and_bounded_and_straight_from_afar():
     assert_allclose(law.acceleration(far, -0.2 * far / 5.0), 0.0, atol=ROUND_OFF)
 
 
+def test_a_saturated_pd_arrives_without_running_past():
+    law, e, v = SaturatedPD(10000.0, 0.2, 1.0), np.array([0.15]), np.zeros(1)
+    way = []
+    for _ in range(3000):
+        v = v + 1e-3 * law.acceleration(e, v)
+        e = e + 1e-3 * v
+        way.append([e[0], abs(v[0])])
+    errors, speeds = np.array(way).T
+    assert errors.min() > -1e-5
+    assert speeds.max() < 0.2 + ROUND_OFF
+    assert abs(errors[-1]) < 1e-9
+
+
 def test_locking_holds_a_joint_in_its_zone_though_the_task_below_would_free_it():
     joint = ARM.joint_names[3]
     i = ARM.joint_index(joint)
