@@ -121,6 +121,7 @@ class Impedance(_Compliant):
         gains = (mass, stiffness, damping)
         name = name or f"{frame} impedance"
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
+        self.claims = (f"force of sensor '{sensor}'", f"moment of sensor '{sensor}'")
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""

@@ -171,6 +171,22 @@ def test_what_cannot_be_used_is_refused_by_name(make, word):
         make()
 
 
+def test_no_two_tasks_answer_the_same_measured_force():
+    soft = Impedance(TIP, P, sensor_frame=TIP)
+    with pytest.raises(InputError, match=r"'tip hybrid' and 'tip impedance' both"):
+        press() >> soft
+    assert len(press(sensor="ankle") >> soft >> Damping()) == 3
+    moments = HybridForceMotion(
+        TIP,
+        P,
+        np.zeros(6),
+        (0, 0, 0, 1, 1, 0),
+        orientation=np.eye(3),
+        name="moments",
+    )
+    assert len(press() >> moments) == 2
+
+
 def test_a_refused_target_leaves_the_old_one():
     task = press()
     for change in (
