@@ -92,7 +92,7 @@ class HybridForceMotion(TouchTask):
         self.force_damping = per_row(force_damping, "force_damping")
         self.approach = positive(approach, "approach", zero=True)
         self._contact = Contact(threshold)
-        self._target = np.zeros((4, 6))
+        self._target = np.zeros((3, 6))
         self._R_d = np.eye(3)
         if S.size == 6 and orientation is None:
             raise InputError(f"'{name}' has six rows: give it an orientation.")
@@ -117,7 +117,7 @@ class HybridForceMotion(TouchTask):
         a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
         if orientation is not None:
             self._R_d = rotation(orientation, f"target of '{self.name}'")
-        self._target[:3, :3] = p, v, a
+        self._target[:, :3] = p, v, a
 
     def set_force(self, force: ArrayLike) -> None:
         """Change F_d, (3,) or (6,) in D; motion rows ignore theirs.
@@ -194,7 +194,7 @@ class HybridForceMotion(TouchTask):
             self._held[:] = 0.0  # nothing would unlearn it
 
     def _motion(self, F: FrameState, rows: Rows) -> None:
-        p, v, a = self._target[:3]
+        p, v, a = self._target
         error, self._p = np.zeros(6), F.p
         error[:3] = F.p - p[:3]
         if self.size == 6:

@@ -94,6 +94,19 @@ def test_what_is_not_finite_is_neither_sent_nor_remembered():
     assert_array_equal(kept, [3.0])
 
 
+def test_a_sensor_that_falls_silent_makes_the_controller_hold_the_robot():
+    task = press()
+    controller = Controller(ARM, task >> Damping())
+    controller(HOME, REST, wrenches=felt(15.0))
+    before = held(task)
+    solution = controller(HOME, REST)
+    assert solution.status is Status.SOLVER_FAILED
+    assert "fell silent" in solution.message
+    assert np.isfinite(solution.torque).all()
+    assert held(task) == before
+    assert controller(HOME, REST, wrenches=felt(15.0)).ok
+
+
 def test_contact_begins_at_the_threshold_and_ends_after_a_while_below_half_of_it():
     task = press(threshold=2.0)
     controller = Controller(ARM, task >> Damping())
