@@ -77,7 +77,8 @@ class Stack:
         weights: (m,) the weights.
         levels: one slice of the rows a level.
         terms: the tasks and their places.
-        M, h: inertia (n, n) and bias torques (n,) of the last state.
+        M, h: inertia (n, n) and bias torques (n,) of the last state; h includes
+            torques of the contact forces that tasks count on.
         L_inv: (n, n) inverse of the Cholesky factor of M.
         tick: how often the rows were rewritten.
     """
@@ -98,6 +99,11 @@ class Stack:
         self._answer_size = 2 * robot.nv + m + len(self.levels)
         self._python = [term for term in self.terms if term.kernel is None]
         self._program: Program | None = None
+        self._advancing = [
+            term.task
+            for term in self._python
+            if type(term.task).advance is not Task.advance
+        ]
         self._state: State | None = None
         self.tick = 0
 
@@ -170,7 +176,16 @@ class Stack:
         self.tick += 1
         for term in self._python:
             term.task.update(state, term.rows)
+        if self._advancing:
+            self._advance(state)
         return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
+
+    def _advance(self, state: State) -> None:
+        """Let tasks with a memory move on, and add their contact torques to h."""
+        self.h[:] = 0.0
+        for task in self._advancing:
+            task.advance(state, self.h)
+        self.h += state.h
 
     def _complain(self, outcome: int) -> NoReturn:
         """Say which row is not finite, or that the inertia is no inertia."""
@@ -187,7 +202,8 @@ class Stack:
 
     def _bind(self, state: State) -> None:
         """Read from another State's memory from now on."""
-        self._state, self.M, self.h = state, state.M, state.h
+        self._state, self.M = state, state.M
+        self.h = np.zeros(state.h.size) if self._advancing else state.h
         self._M = state.M.T  # symmetric, and stored by rows as kernels want it
         places = [
             Place(
@@ -201,7 +217,7 @@ class Stack:
             if term.kernel is not None
         ]
         table, self._runner = self._table, without_kernels
-        table[slots.INERTIA : slots.BIAS + 1] = address_of(state.M), address_of(state.h)
+        table[slots.INERTIA : slots.BIAS + 1] = address_of(state.M), address_of(self.h)
         if places:
             self._program = Program(places, state, self.lower.size)
             self._program.enter(table)

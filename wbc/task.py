@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
+from wbc.arrays import Array
 from wbc.errors import InputError
 from wbc.kernel import Kernel
 from wbc.law import Law
@@ -31,6 +32,8 @@ class Task(ABC):
     """
 
     space: Space = "acceleration"
+    claims: tuple[str, ...] = ()
+    """Measured forces that `advance` puts into the torques; no two tasks may share."""
     __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
@@ -43,6 +46,14 @@ class Task(ABC):
     @abstractmethod
     def update(self, state: State, rows: Rows) -> None:
         """Write A, lower and upper at this state, in place."""
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Once a tick, after `update`: move on what the task remembers.
+
+        A task that counts on a contact force f, of the robot on its surroundings, adds
+        J^T f to `torque` (n,) [Nm], which is zero at first: tau = M vdot + h + torque.
+        """
+        del state, torque
 
     def check(self, robot: Robot) -> None:
         """See that the task fits the robot; called once, by whoever binds them.
