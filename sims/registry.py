@@ -9,7 +9,10 @@ from wbc import UnknownName
 
 __all__ = ["cell_names", "find_demo"]
 
-MODULES = {"welding": "sims.welding.demo"}
+MODULES = {
+    "welding": "sims.welding.demo",
+    "grasping": "sims.grasping.demo",
+}
 
 
 def cell_names() -> list[str]:
