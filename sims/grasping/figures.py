@@ -52,9 +52,7 @@ def _paths(results: list[Result]) -> tuple[str, str]:
 
 def _misfit(results: list[Result]) -> tuple[str, str]:
     def error(result: Result) -> Array:
-        span = result.span("reach", "close")
-        late = result.span("approach", "close")
-        span = slice(late.start, span.stop)
+        span = result.span("approach", "close")
         lengths, _ = misfit(result.job.cylinder, result.log, span)
         return np.abs(lengths).max(axis=1) * MICRO
 

@@ -1,7 +1,7 @@
 """The gripper's mechanism and its force control.
 
-The controller of the arm sees a rigid tool (`robots/tools/gripper.xml`). The scene makes
-the fingers slide, coupled as by rack and pinion, so that they meet in the middle
+The controller of the arm sees a rigid tool (`robots/tools/gripper.xml`). The scene
+makes the fingers slide, coupled as by rack and pinion, so that they meet in the middle
 whatever pulls on the object; each is driven by a force and damped, so that it closes at
 a bounded speed and then holds with exactly that force.
 """

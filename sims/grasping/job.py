@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final, final
+from typing import final
 
 import numpy as np
 
@@ -22,6 +22,9 @@ DOWN, UP = 0.8, 0.8
 """Between hovering over the rim and the rim [s]."""
 CLOSING, LIFTING, OPENING, RESTING = 0.5, 1.0, 0.5, 0.3
 """[s]"""
+CALM = 0.12
+"""Share of the acceleration limits in carrying. The engine's friction holds velocities,
+not positions: what slips within the steps of time grows with the speed of turning."""
 
 
 @final
@@ -114,7 +117,7 @@ def _phases(robot: Robot, plan: Plan, start: Array) -> list[Phase]:
         Phase("approach", _line(plan.above, plan.grasp, DOWN)),
         Phase("close", _rest(plan.grasp, CLOSING)),
         Phase("lift", _line(plan.grasp, plan.lifted, LIFTING)),
-        Phase("carry", Transfer(robot, TCP, plan.lifted.q, plan.over.q)),
+        Phase("carry", Transfer(robot, TCP, plan.lifted.q, plan.over.q, push=CALM)),
         Phase("lower", _line(plan.over, plan.placed, DOWN)),
         Phase("settle", _rest(plan.placed, RESTING)),
         Phase("open", _rest(plan.placed, OPENING)),

@@ -15,8 +15,10 @@ from wbc.arrays import Array
 
 __all__ = ["Phase", "Reference", "Straight", "Timeline", "Transfer"]
 
-SPEED_SHARE, ACCELERATION_SHARE = 0.3, 0.5
-"""Of the joints' limits that a transfer uses."""
+SPEED_SHARE = 0.3
+"""Of the joints' speed limits that a transfer uses."""
+LEAST = 0.8
+"""Shortest duration of a transfer [s]."""
 PEAK_SPEED, PEAK_ACCELERATION = 1.875, 10.0 / np.sqrt(3.0)
 """Of a quintic, over its mean speed and over that divided by its time."""
 ALIGNED = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -69,18 +71,18 @@ class Transfer(Motion):
         frame: whose pose it is.
         start: (n,) [rad].
         end: (n,) [rad].
-        least: shortest duration [s]; the joints' limits may make it longer.
+        push: share of the joints' acceleration limits that it uses.
     """
 
     def __init__(
-        self, robot: Robot, frame: str, start: Array, end: Array, least: float = 0.8
+        self, robot: Robot, frame: str, start: Array, end: Array, push: float = 0.5
     ) -> None:
         self._model, self._data = robot.model, robot.model.createData()
         self._frame, self._start, self._way = robot.frame_id(frame), start, end - start
         way = np.abs(self._way)
         speed = PEAK_SPEED * way / (SPEED_SHARE * robot.v_max)
-        push = PEAK_ACCELERATION * way / (ACCELERATION_SHARE * robot.a_max)
-        self.duration = max(least, float(speed.max()), float(np.sqrt(push.max())))
+        square = PEAK_ACCELERATION * way / (push * robot.a_max)
+        self.duration = max(LEAST, float(speed.max()), float(np.sqrt(square.max())))
 
     def at(self, t: float) -> Reference:
         """The pose by forward kinematics."""

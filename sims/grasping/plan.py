@@ -1,4 +1,4 @@
-"""Which point of the rim, and the postures from there to the goal, before any motion."""
+"""Which point of the rim, and the postures from there to the goal: a plan."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ LIFT: Final = 0.10
 """[m]"""
 CLEARANCE: Final = 5e-4
 """Height above the goal at which the fingers let go [m]."""
+UP: Final = np.array([0.0, 0.0, 1.0])
 ANGLES: Final = 24
 """Places on the rim that are tried for each way round of the gripper."""
 REFINEMENTS: Final = 5
@@ -77,7 +78,7 @@ def make_plan(robot: Robot, cylinder: Cylinder, goal: Array, start: Array) -> Pl
     _need(grasp, cylinder, "its rim")
     lifted = nearest(robot, TCP, raised(grasp.X, LIFT), grasp.q)
     _need(lifted, cylinder, f"{LIFT} m above the grasp")
-    top = pin.SE3(np.eye(3), goal + [0.0, 0.0, cylinder.height + CLEARANCE])
+    top = pin.SE3(np.eye(3), goal + (cylinder.height + CLEARANCE) * UP)
     over = _around(robot, cylinder, raised(top, HOVER), lifted.q, flipped)
     _need(over, cylinder, "the goal")
     placed = nearest(robot, TCP, raised(over.X, -HOVER), over.q)
@@ -87,7 +88,7 @@ def make_plan(robot: Robot, cylinder: Cylinder, goal: Array, start: Array) -> Pl
 
 
 def rim_pose(cylinder: Cylinder, top: pin.SE3, angle: float, flipped: bool) -> pin.SE3:
-    """Pose of the tcp at an angle of the rim [rad], of a cylinder whose top is at `top`.
+    """Pose of the tcp at an angle of the rim [rad], given the pose of the top.
 
     The approach direction z is against the axis, the closing direction x radial.
     """
@@ -104,7 +105,7 @@ def shifted(X: pin.SE3, depth: float) -> pin.SE3:
 
 def raised(X: pin.SE3, height: float) -> pin.SE3:
     """A pose further up [m]."""
-    return pin.SE3(X.rotation, X.translation + [0.0, 0.0, height])
+    return pin.SE3(X.rotation, X.translation + height * UP)
 
 
 def _pick(

@@ -87,7 +87,7 @@ def add_stand(
 
 
 def add_cylinder_body(spec: mujoco.MjSpec, cylinder: Cylinder, name: str) -> None:
-    """A free body: a ring of boxes for the wall, feet, and the filling of a solid one."""
+    """A free body: a ring of boxes for the wall, feet, and what fills a solid one."""
     quat = np.zeros(4)
     mujoco.mju_mat2Quat(quat, np.ascontiguousarray(cylinder.R).ravel())
     body = spec.worldbody.add_body(name=name, pos=cylinder.p, quat=quat)
