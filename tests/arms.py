@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import xml.etree.ElementTree as ET
 from functools import cache
 
 import numpy as np
@@ -107,3 +109,37 @@ def random_arm(rng: np.random.Generator, n: int) -> Robot:
 
 ROBOTS = {"racer": six_axis, "seven": seven_axis}
 TIPS = {"racer": "torch_tip", "seven": "tip"}
+
+
+def two_arms_mjcf() -> str:
+    """Two of the seven-axis arms in one model, face to face: left_* and right_*."""
+    arm = ET.fromstring(seven_axis_mjcf())
+    world, motors = arm.find("worldbody"), arm.find("actuator")
+    assert world is not None
+    assert motors is not None
+    left = world[0]
+    right = copy.deepcopy(left)
+    right.set("pos", "1.1 0 0")
+    right.set("quat", "0 0 0 1")
+    world.remove(left)
+    ET.SubElement(world, "body", name="floor").extend([left, right])
+    for side, base in (("left", left), ("right", right)):
+        for element in base.iter():
+            if "name" in element.attrib:
+                element.set("name", f"{side}_{element.get('name')}")
+    for motor in list(motors):
+        other = copy.deepcopy(motor)
+        for side, one in (("left", motor), ("right", other)):
+            one.set("name", f"{side}_{one.get('name')}")
+            one.set("joint", f"{side}_{one.get('joint')}")
+        motors.append(other)
+    for numeric in arm.iter("numeric"):
+        numeric.set("data", f"{numeric.get('data')} {numeric.get('data')}")
+    for key in arm.iter("key"):
+        key.set("qpos", f"{key.get('qpos')} {key.get('qpos')}")
+    return ET.tostring(arm, encoding="unicode")
+
+
+@cache
+def two_arms() -> Robot:
+    return Robot.from_mjcf(two_arms_mjcf(), name="two arms")

@@ -10,13 +10,15 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.errors import InputError
 from wbc.frames import Frames
-from wbc.kernel import Kernel
+from wbc.kernel import WORLD, Kernel
 from wbc.pointers import address_of
 from wbc.state import State
 
 __all__ = ["Place", "RowsWriter"]
 
 SCRATCH = 96
+NONE, BY_ITSELF = -1, -2
+"""In place of a frame's index: there is none; one that moves by itself."""
 
 
 class Place(NamedTuple):
@@ -26,12 +28,14 @@ class Place(NamedTuple):
         kernel: how its rows are computed.
         frame: name of the frame that it reads, None for none.
         begin, end: its rows.
+        second: name of the frame from which it sees the first, None for the world.
     """
 
     kernel: Kernel
     frame: str | None
     begin: int
     end: int
+    second: str | None = None
 
 
 @final
@@ -50,16 +54,17 @@ class RowsWriter:
         self._evaluate = self._kernels[0].evaluator
         if any(kernel.evaluator is not self._evaluate for kernel in self._kernels):
             raise InputError("compiled tasks of one stack must share one catalogue.")
-        names = list(dict.fromkeys(p.frame for p in places if p.frame)) or ["universe"]
+        read = [name for p in places for name in (p.frame, p.second) if name]
+        names = list(dict.fromkeys(read)) or [WORLD]
         indices = [robot.frame_id(name) for name in names]
         self._frames = Frames(robot.model, state.data, names, indices)
         self._program = np.array([_entry(place, names) for place in places], np.int_)
         self._gains = np.full((2, m), -1.0)
-        for kernel, _, begin, end in places:
+        for kernel, _, begin, end, _ in places:
             if kernel.damping is not None and kernel.stiffness is not None:
                 self._gains[0, begin:end] = kernel.stiffness
                 self._gains[1, begin:end] = kernel.damping
-        self._scratch = np.zeros((2, SCRATCH + robot.nv))
+        self._scratch = np.zeros((4, SCRATCH + 6 * robot.nv))
 
     def write(self, A: Array, bands: Array) -> None:
         """Write A (m, n) and bands (5, m): error, rate, drift, lower, upper."""
@@ -95,15 +100,22 @@ class RowsWriter:
 def _entry(place: Place, names: Sequence[str]) -> list[int]:
     """One row of the program."""
     kernel = place.kernel
-    frame = names.index(place.frame) if place.frame else 0
+    moving, frames = kernel.moving, [0, NONE]
+    for i, name in enumerate((place.frame, place.second)):
+        if name == WORLD and moving is not None:
+            frames[i] = BY_ITSELF
+        elif name:
+            frames[i] = names.index(name)
     p, table = kernel.parameters, kernel.table
     return [
         kernel.code,
-        frame,
+        frames[0],
         place.begin,
         place.end,
         address_of(p),
         p.size,
         address_of(table),
         table.size,
+        frames[1],
+        0 if moving is None else address_of(moving),
     ]

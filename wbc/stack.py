@@ -162,6 +162,7 @@ class Stack:
                 next(iter(term.task.frames), None),
                 term.where.start,
                 term.where.stop,
+                next(iter(term.task.frames[1:]), None),
             )
             for term in self.terms
             if term.kernel is not None

@@ -54,6 +54,16 @@ class Task(ABC):
         for frame in self.frames:
             robot.frame_id(frame)
 
+    def row_units(self, rows: int) -> tuple[str, ...]:
+        """Unit of the error of each of so many rows.
+
+        A `unit` of several parts, "m, rad", is shared out in equal blocks.
+        """
+        parts = [part.strip() for part in self.unit.split(",")]
+        if rows % len(parts):
+            return (self.unit,) * rows
+        return tuple(part for part in parts for _ in range(rows // len(parts)))
+
     def kernel(self, robot: Robot) -> Kernel | None:
         """The task's compiled half for this robot; None for plain Python."""
         del robot

@@ -157,17 +157,14 @@ def _bounds(tick: Tick, levels: list[Response]) -> Iterator[ActiveBound]:
 
 
 def _row_units(term: Term) -> tuple[str, ...]:
-    """Unit of every row's bounds: torques as they are, errors per second squared.
-
-    A unit of several parts, "m, rad", is shared out in equal blocks.
-    """
-    parts = [part.strip() for part in term.task.unit.split(",")]
-    if term.task.space != "torque":
-        parts = [_per_second_squared(part) for part in parts]
-    m = len(term.names)
-    if m % len(parts):
-        return (", ".join(parts),) * m
-    return tuple(part for part in parts for _ in range(m // len(parts)))
+    """Unit of every row's bounds: torques as they are, errors per second squared."""
+    units = term.task.row_units(len(term.names))
+    if term.task.space == "torque":
+        return units
+    return tuple(
+        ", ".join(_per_second_squared(part.strip()) for part in unit.split(","))
+        for unit in units
+    )
 
 
 def _per_second_squared(unit: str) -> str:
