@@ -63,7 +63,9 @@ class Job:
         self.cylinder, self.model = cylinder, cell.model
         self.plan = make_plan(robot, cylinder, goal, start)
         self.timeline = Timeline(_phases(robot, self.plan, start))
-        self.rim = RimGrasp(self.timeline.at(0.0))
+        self.rim = RimGrasp(
+            self.timeline.at(0.0), cylinder.rim, flipped=self.plan.flipped
+        )
         self.gripper = Gripper(cell, force)
         self.grip: Grip | None = None
         self._phase = ""
