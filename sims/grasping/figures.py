@@ -38,7 +38,7 @@ def _rims(results: list[Result]) -> tuple[str, str]:
         tcp = (grasp.translation - cylinder.p) @ cylinder.R
         closing = cylinder.R.T @ grasp.rotation[:, 0]
         ends = MILLI * (tcp + np.outer([-0.012, 0.012], closing))
-        curves[f"fingers {cylinder.name[:2]}"] = (ends[:, 0], ends[:, 1])
+        curves[f"fingers at {cylinder.name.split(':')[0]}"] = (ends[:, 0], ends[:, 1])
     svg = xy("Grasps on the rim, seen along the axis", curves, "x [mm]", "y [mm]")
     return "The place on the rim is the one nearest to the arm's posture.", svg
 
