@@ -27,6 +27,7 @@ TORQUE = np.array([176.0, 176, 100, 100, 100, 38, 38])
 HOME = np.array([0.0, 0.5, 0.0, -1.2, 0.0, 0.9, 0.0])
 TIP = 0.178
 ARMATURE = 0.01
+UPPER, LOWER = 0.5, 0.3
 
 
 def _numbers(values) -> str:
@@ -143,3 +144,19 @@ def two_arms_mjcf() -> str:
 @cache
 def two_arms() -> Robot:
     return Robot.from_mjcf(two_arms_mjcf(), name="two arms")
+
+
+def two_link(low: float = -3.1, high: float = 3.1) -> Robot:
+    """A planar arm about z, links of 0.5 and 0.3 m; limits of its elbow [rad]."""
+    inertial = '<inertial mass="1" pos="0.1 0 0" diaginertia="0.01 0.01 0.01"/>'
+    return Robot.from_mjcf(
+        '<mujoco model="2R"><compiler angle="radian"/><option gravity="0 0 0"/>'
+        f'<worldbody><body name="upper">{inertial}'
+        '<joint name="shoulder" axis="0 0 1" range="-3.1 3.1"/>'
+        f'<body name="lower" pos="{UPPER} 0 0">{inertial}'
+        f'<joint name="elbow" axis="0 0 1" range="{low} {high}"/>'
+        f'<site name="tip" pos="{LOWER} 0 0"/></body></body></worldbody>'
+        '<actuator><motor joint="shoulder" ctrlrange="-50 50"/>'
+        '<motor joint="elbow" ctrlrange="-50 50"/></actuator></mujoco>',
+        velocity_limit=3.0,
+    )

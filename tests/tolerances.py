@@ -29,3 +29,5 @@ JOINT = 1e-9
 ROUND_OFF = 1e-12
 # An interpolated curve against its closed form: length and radius, relative.
 CURVE = 1e-7
+# A pose against a closed form, and the error of constraints that it holds [m, rad].
+POSE = 1e-7

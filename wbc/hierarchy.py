@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import final
+from typing import TYPE_CHECKING, final
 
+from wbc.analysis import Analysis, Metric, analyse
 from wbc.arrays import positive
 from wbc.errors import InputError
+from wbc.linalg import RANK_TOLERANCE
 from wbc.task import Task
+
+if TYPE_CHECKING:
+    from wbc.state import State
 
 __all__ = ["Hierarchy", "Level"]
 
@@ -104,6 +109,19 @@ class Hierarchy:
     def tasks(self) -> Iterator[Task]:
         """All tasks, from the top."""
         return (task for level in self.levels for task, _ in level.terms)
+
+    def analyse(
+        self,
+        state: State,
+        *,
+        metric: Metric = "kinetic",
+        tolerance: float = RANK_TOLERANCE,
+    ) -> Analysis:
+        """Rank, freedom, redundant and conflicting rows of every level at a state.
+
+        Arguments and errors as for `wbc.analysis.analyse`; print the result.
+        """
+        return analyse(self, state, metric, tolerance)
 
     def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
         return Hierarchy(*self.levels, *Hierarchy.of(other).levels)

@@ -64,6 +64,16 @@ class Task(ABC):
             return (self.unit,) * rows
         return tuple(part for part in parts for _ in range(rows // len(parts)))
 
+    def wish_units(self, rows: int) -> tuple[str, ...]:
+        """Unit of the bounds of each row: torques as they are, errors per s^2."""
+        units = self.row_units(rows)
+        if self.space == "torque":
+            return units
+        return tuple(
+            ", ".join(_per_second_squared(part.strip()) for part in unit.split(","))
+            for unit in units
+        )
+
     def kernel(self, robot: Robot) -> Kernel | None:
         """The task's compiled half for this robot; None for plain Python."""
         del robot
@@ -150,3 +160,9 @@ class MotionTask(Task):
         rows.rate[:] += rows.A @ state.v
         rows.upper[:] = self.law.acceleration(rows.error, rows.rate) - rows.drift
         rows.lower[:] = rows.upper
+
+
+def _per_second_squared(unit: str) -> str:
+    if unit in ("", "-") or unit.endswith("/s^2"):
+        return unit.strip("-")
+    return f"{unit}^2" if unit.endswith("/s") else f"{unit}/s^2"
