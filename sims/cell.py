@@ -11,6 +11,7 @@ import numpy as np
 
 from sims.mismatch import Mismatch
 from sims.sensors import Encoders
+from sims.wrist import WristSensor
 from wbc import InputError, Robot
 from wbc.arrays import Array
 
@@ -26,7 +27,8 @@ class Observation:
         t: time [s].
         q: (n,) measured positions [rad].
         v: (n,) measured velocities [rad/s].
-        wrenches: sensor name -> (6,) robot on environment, world axes [N, Nm].
+        wrenches: sensor name -> (6,) robot on environment, world axes at the sensor
+            [N, Nm].
     """
 
     t: float
@@ -77,9 +79,11 @@ class ArmCell(Cell):
         spec: the scene with the arm in it, joints named as in the robot.
         mismatch: how the simulated arm differs from the model; None for not at all.
         encoders: what the joint sensors add; perfect ones by default.
+        wrist: a force/torque sensor; none by default.
 
     Raises:
         InputError: a joint of the robot is missing in the scene, or has no motor.
+        UnknownName: the site of the force/torque sensor is missing.
     """
 
     def __init__(
@@ -90,13 +94,18 @@ class ArmCell(Cell):
         *,
         mismatch: Mismatch | None = None,
         encoders: Encoders | None = None,
+        wrist: WristSensor | None = None,
     ) -> None:
-        self.name, self.robot = name, robot
+        self.name, self.robot, self._wrist = name, robot, wrist
+        if wrist is not None:
+            wrist.mount(spec)
         self.model = spec.compile()
         self._joints = [self._joint(joint) for joint in robot.joint_names]
         self._motors = np.array([self._motor(j) for j in self._joints])
         self._qpos = self.model.jnt_qposadr[self._joints]
         self._dofs = self.model.jnt_dofadr[self._joints]
+        if wrist is not None:
+            wrist.bind(self.model)  # the nominal tool, whatever is simulated
         if mismatch is not None:
             mismatch.apply(self.model, self._dofs, robot.tau_max)
         self.data = mujoco.MjData(self.model)
@@ -122,13 +131,24 @@ class ArmCell(Cell):
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[self._qpos] = q
         self._encoders.reset()
+        if self._wrist is not None:
+            self._hold()
+            self._wrist.reset(self.data)
         mujoco.mj_step1(self.model, self.data)
 
+    def _hold(self) -> None:
+        """Let the motors carry the arm's weight, so that sensors feel it at rest."""
+        mujoco.mj_forward(self.model, self.data)
+        self.apply(self.data.qfrc_bias[self._dofs])
+        mujoco.mj_forward(self.model, self.data)
+
     def observe(self) -> Observation:
-        """Joint readings of this instant."""
+        """Joint readings of this instant, and the wrench of the one before."""
         d = self.data
         q, v = self._encoders.read(d.qpos[self._qpos], d.qvel[self._dofs])
-        return Observation(d.time, q, v)
+        if self._wrist is None:
+            return Observation(d.time, q, v)
+        return Observation(d.time, q, v, {self._wrist.name: self._wrist.read(d)})
 
     def apply(self, torque: Array) -> None:
         """Set the motors' torques (n,) [Nm]."""

@@ -29,6 +29,7 @@ class Log:
         qpos: (T, nq) of the whole simulated world.
         errors: task name -> (T,) norm of its error, in the task's unit.
         active: "level k: task: row" -> (T,) whether that bound was active.
+        wrenches: sensor name -> (T, 6) what the controller saw [N, Nm].
         ranks: (T, p) directions that each level could use.
         p, R: site name -> (T, 3) and (T, 3, 3) true poses.
         tick: (T,) time of the controller's call [s].
@@ -49,6 +50,7 @@ class Log:
         self.ranks = np.zeros((ticks, len(controller.hierarchy)), dtype=int)
         self.errors = {task.name: np.full(ticks, np.nan) for task in tasks}
         self.active: dict[str, Array] = {}
+        self.wrenches: dict[str, Array] = {}
         self._sites = {name: _site(cell, name) for name in sites}
         self.p = {name: np.zeros((ticks, 3)) for name in sites}
         self.R = {name: np.zeros((ticks, 3, 3)) for name in sites}
@@ -63,6 +65,9 @@ class Log:
         self.t[tick], self.tick[tick] = seen.t, spent
         self.q[tick], self.v[tick] = self._cell.truth
         self.qpos[tick], self.torque[tick] = d.qpos, solution.torque
+        for name, wrench in seen.wrenches.items():
+            kept = self.wrenches.setdefault(name, np.zeros((self.t.size, 6)))
+            kept[tick] = wrench
         for name, site in self._sites.items():
             self.p[name][tick] = d.site_xpos[site]
             self.R[name][tick] = d.site_xmat[site].reshape(3, 3)
@@ -79,7 +84,7 @@ class Log:
         k = self.count
         for name in ("t", "tick", "q", "v", "torque", "qpos", "ranks"):
             setattr(self, name, getattr(self, name)[:k])
-        for series in (self.errors, self.active, self.p, self.R):
+        for series in (self.errors, self.active, self.wrenches, self.p, self.R):
             for name in series:
                 series[name] = series[name][:k]
         self.failures = self._controller.failures - self._failed
@@ -93,6 +98,7 @@ class Log:
         named |= {"ranks": self.ranks, "tick_s": self.tick}
         named |= {f"error/{name}": e for name, e in self.errors.items()}
         named |= {f"active/{name}": a for name, a in self.active.items()}
+        named |= {f"wrench/{name}": w for name, w in self.wrenches.items()}
         named |= {f"p/{name}": p for name, p in self.p.items()}
         return named
 

@@ -11,6 +11,7 @@ __all__ = ["cell_names", "find_demo"]
 
 MODULES = {
     "welding": "sims.welding.demo",
+    "constraints": "sims.constraints.demo",
     "grasping": "sims.grasping.demo",
 }
 

@@ -2,13 +2,16 @@
 
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
-paths (`PointOnCurve`, `TravelSpeed`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `TorqueLimits`).
+paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`,
+`Impedance`, `Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and
+limits (`JointLimits`, `JointLocking`, `TorqueLimits`).
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
 from tasks.axis import AxisAlignment, AxisAlongPath
 from tasks.curve import Curve
+from tasks.force import HybridForceMotion
+from tasks.forcelaw import ForceLaw
 from tasks.frame import FrameOrientation, FramePose, FramePosition
 from tasks.geometry import (
     AngleBetweenLines,
@@ -35,11 +38,14 @@ from tasks.geometry import (
     PointOnPoint,
     rim_grasp,
 )
+from tasks.impedance import Admittance, Impedance
 from tasks.limits import JointLimits, TorqueLimits
+from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
 
 __all__ = [
+    "Admittance",
     "AngleBetweenLines",
     "AxisAlignment",
     "AxisAlongPath",
@@ -50,11 +56,15 @@ __all__ = [
     "DistanceToLine",
     "DistanceToPlane",
     "DistanceToPoint",
+    "ForceLaw",
     "FrameMotion",
     "FrameOrientation",
     "FramePose",
     "FramePosition",
+    "HybridForceMotion",
+    "Impedance",
     "JointLimits",
+    "JointLocking",
     "Line",
     "LineInPlane",
     "LineOnLine",

@@ -16,7 +16,7 @@ import tasks
 from tests.arms import TIPS
 from wbc import Hierarchy, Level, Robot, Rows, State, Task
 
-Kind = Literal["exact", "near zero", "velocity", "bounds"]
+Kind = Literal["exact", "near zero", "velocity", "force", "bounds"]
 Rng = np.random.Generator
 
 
@@ -38,7 +38,8 @@ class Entry:
 
     kind: "exact" where d(error)/dt is the rate everywhere, "near zero" where only at
     a small error (errors that are rotations), "velocity" where the error is itself
-    the rate, "bounds" for inequality tasks.
+    the rate, "force" for tasks that answer a measured wrench, "bounds" for inequality
+    tasks.
     make: (state, rng, aligned) -> Subject in generic position, or at zero error.
     """
 
@@ -51,10 +52,14 @@ def tip(robot: Robot) -> str:
 
 
 def random_state(robot: Robot, rng: Rng, t: float = 0.0) -> State:
-    """Inside the position limits (or a turn), at a good part of the speed limits."""
+    """Inside the position limits (or a turn), at a good part of the speed limits.
+
+    A sensor "wrist" feels a random wrench.
+    """
     low, high = np.maximum(robot.q_min, -3.0), np.minimum(robot.q_max, 3.0)
     q = rng.uniform(low, high)
-    return robot.state(q, rng.uniform(-0.5, 0.5, robot.nv) * robot.v_max, t)
+    v = rng.uniform(-0.5, 0.5, robot.nv) * robot.v_max
+    return robot.state(q, v, t, wrenches={"wrist": 10.0 * rng.normal(size=6)})
 
 
 def random_rotation(rng: Rng, size: float = 2.0) -> np.ndarray:
@@ -300,6 +305,30 @@ def _speed(state: State, rng: Rng, aligned: bool) -> Subject:
     )
 
 
+def _hybrid(state: State, rng: Rng, aligned: bool) -> Subject:
+    frame = tip(state.robot)
+    return Subject(
+        tasks.HybridForceMotion(
+            frame,
+            _near(state, rng, aligned),
+            rng.normal(size=6),
+            (0, 1, 0, 1, 0, 0),
+            orientation=_target(state, rng, aligned),
+            axes=random_rotation(rng),
+            sensor_frame=frame,
+        )
+    )
+
+
+def _compliant(kind: type[tasks.Impedance] | type[tasks.Admittance]):
+    def make(state: State, rng: Rng, aligned: bool) -> Subject:
+        frame = tip(state.robot)
+        target, axes = _near(state, rng, aligned), random_rotation(rng)
+        return Subject(kind(frame, target, axes=axes, sensor_frame=frame))
+
+    return make
+
+
 CATALOGUE: dict[type[Task], Entry] = {
     tasks.FramePosition: Entry("exact", _position),
     tasks.FrameOrientation: Entry("near zero", _orientation),
@@ -338,11 +367,19 @@ CATALOGUE: dict[type[Task], Entry] = {
         "exact", lambda s, g, z: Subject(tasks.Posture(g.uniform(-1, 1, s.robot.nv)))
     ),
     tasks.Damping: Entry("velocity", lambda s, g, z: Subject(tasks.Damping())),
+    tasks.HybridForceMotion: Entry("force", _hybrid),
+    tasks.Impedance: Entry("force", _compliant(tasks.Impedance)),
+    tasks.Admittance: Entry("force", _compliant(tasks.Admittance)),
+    tasks.JointLocking: Entry("bounds", lambda s, g, z: Subject(tasks.JointLocking())),
     tasks.JointLimits: Entry("bounds", lambda s, g, z: Subject(tasks.JointLimits())),
     tasks.TorqueLimits: Entry("bounds", lambda s, g, z: Subject(tasks.TorqueLimits())),
 }
 
-MOTION = {task: entry for task, entry in CATALOGUE.items() if entry.kind != "bounds"}
+MOTION = {
+    task: entry
+    for task, entry in CATALOGUE.items()
+    if entry.kind not in ("force", "bounds")
+}
 
 
 # ----------------------------------------------------------------- rows of one's own

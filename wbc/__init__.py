@@ -22,7 +22,7 @@ from wbc.frames import FrameState
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
 from wbc.kernel import Kernel
-from wbc.law import PD, Damper, Law
+from wbc.law import PD, Damper, Law, SaturatedPD
 from wbc.nullspace import NullSpace
 from wbc.pose import PoseResult, TaskMiss, solve_pose
 from wbc.qp import backends
@@ -61,6 +61,7 @@ __all__ = [
     "Resolver",
     "Robot",
     "Rows",
+    "SaturatedPD",
     "Solution",
     "SolverError",
     "StaleError",

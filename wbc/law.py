@@ -8,9 +8,9 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, per_row
+from wbc.arrays import Array, per_row, positive
 
-__all__ = ["PD", "Damper", "Law"]
+__all__ = ["PD", "Damper", "Law", "SaturatedPD"]
 
 
 class Law(ABC):
@@ -66,3 +66,39 @@ class Damper(Law):
 
     def __repr__(self) -> str:
         return f"Damper({self.damping})"
+
+
+@final
+class SaturatedPD(Law):
+    """A PD that approaches from afar at a bounded speed (Khatib 1987; P4 sec. III-B).
+
+    The wanted velocity -(kp / kd) e is shortened to `speed`, and the acceleration to
+    `acceleration`, both as vectors: the way stays straight.
+
+    Args:
+        stiffness: kp [1/s^2]; damping is critical, kd = 2 sqrt(kp).
+        speed: largest wanted speed [m/s or rad/s].
+        acceleration: largest wanted acceleration [m/s^2 or rad/s^2].
+
+    Raises:
+        InputError: a number is not greater than 0.
+    """
+
+    def __init__(self, stiffness: float, speed: float, acceleration: float) -> None:
+        self.stiffness = per_row(positive(stiffness, "stiffness"), "stiffness")
+        self.damping = per_row(2.0 * np.sqrt(self.stiffness), "damping")
+        self.speed = positive(speed, "speed")
+        self.largest = positive(acceleration, "acceleration")
+
+    def acceleration(self, error: Array, rate: Array) -> Array:
+        """-kd (de/dt - v_d), v_d = -(kp / kd) e, both shortened."""
+        wanted = _shortened(-self.stiffness / self.damping * error, self.speed)
+        return _shortened(self.damping * (wanted - rate), self.largest)
+
+    def __repr__(self) -> str:
+        return f"SaturatedPD({self.stiffness}, {self.speed}, {self.largest})"
+
+
+def _shortened(x: Array, longest: float) -> Array:
+    size = float(np.linalg.norm(x))
+    return x if size <= longest else longest / size * x

@@ -72,7 +72,8 @@ class Stack:
         weights: (m,) the weights.
         levels: one slice of the rows a level.
         terms: the tasks and their places.
-        M, h: inertia (n, n) and bias torques (n,) of the last state.
+        M, h: inertia (n, n) and bias torques (n,) of the last state; h includes
+            torques of the contact forces that tasks count on.
         L_inv: (n, n) inverse of the Cholesky factor of M.
         tick: how often the rows were rewritten.
     """
@@ -91,6 +92,11 @@ class Stack:
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
         self._python = [term for term in self.terms if term.kernel is None]
+        self._advancing = [
+            term.task
+            for term in self._python
+            if type(term.task).advance is not Task.advance
+        ]
         self._writer: RowsWriter | None = None
         self._state: State | None = None
         self.tick = 0
@@ -126,6 +132,8 @@ class Stack:
             self._writer.write(self.raw, self.bands)
         for term in self._python:
             term.task.update(state, term.rows)
+        if self._advancing:
+            self._advance(state)
         outcome = assemble(
             self.raw,
             self.bands,
@@ -140,6 +148,13 @@ class Stack:
         )
         if outcome != -1:
             self._complain(outcome)
+
+    def _advance(self, state: State) -> None:
+        """Let tasks with a memory move on, and add their contact torques to h."""
+        self.h = np.zeros(state.h.size)
+        for task in self._advancing:
+            task.advance(state, self.h)
+        self.h += state.h
 
     def _complain(self, outcome: int) -> NoReturn:
         """Say which row is not finite, or that the inertia is no inertia."""

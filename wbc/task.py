@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
+from wbc.arrays import Array
 from wbc.errors import InputError
 from wbc.kernel import Kernel
 from wbc.law import Law
@@ -43,6 +44,14 @@ class Task(ABC):
     @abstractmethod
     def update(self, state: State, rows: Rows) -> None:
         """Write A, lower and upper at this state, in place."""
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Once a tick, after `update`: move on what the task remembers.
+
+        A task that counts on a contact force f, of the robot on its surroundings, adds
+        J^T f to `torque` (n,) [Nm], which is zero at first: tau = M vdot + h + torque.
+        """
+        del state, torque
 
     def check(self, robot: Robot) -> None:
         """See that the task fits the robot; called once, by whoever binds them.

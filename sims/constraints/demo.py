@@ -1,0 +1,153 @@
+"""The demo of P4 section III: all cases, judged and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import chain
+
+import mujoco
+import numpy as np
+
+from robots import racer
+from sims import constraints
+from sims.cell import ArmCell, Cell
+from sims.constraints import hybrid, joint_limit, plane
+from sims.constraints.case import Case, Trial
+from sims.constraints.soundness import soundness
+from sims.constraints.surface import TIP
+from sims.demo import Demo, Options, Outcome
+from sims.log import Log, shared_metrics
+from sims.metrics import Metric
+from sims.report.replay import Replay, Trace
+from sims.report.snapshot import Image, render
+from sims.resolvers import make_resolver
+from sims.run import run
+from sims.viewer import Viewer, open_viewer
+from wbc import Controller, Solution
+from wbc.arrays import Array
+
+__all__ = ["DEMO"]
+
+FAMILIES = (plane, joint_limit, hybrid)
+"""Modules of cases: each has `cases`, `metrics` and `figures`."""
+PAUSE = 0.5
+"""Between two runs in the replay [s]."""
+SOUND = 1e-9
+COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#56B4E9")
+
+
+class _Touch:
+    """Keeps the true contact force of every tick, and passes the tick on."""
+
+    def __init__(self, window: Viewer | None) -> None:
+        self.force: list[float] = []
+        self._window = window
+
+    def __call__(self, cell: Cell, solution: Solution) -> bool:
+        self.force.append(float(cell.data.sensor("touch").data[0]))
+        return self._window is None or self._window(cell, solution)
+
+
+def _run(options: Options) -> Outcome:
+    """Run every case of every family."""
+    arm = racer.load("probe")
+    cell = constraints.cell(arm, mismatch=options.mismatch, seed=options.seed)
+    window = open_viewer(cell, _camera()) if options.view else None
+    trials: dict[str, Trial] = {}
+    for case in chain.from_iterable(family.cases(arm) for family in FAMILIES):
+        trials[case.name] = _try(cell, case, options, window)
+    if window:
+        window.close()
+    judged = chain.from_iterable(f.metrics(trials, options.mismatch) for f in FAMILIES)
+    logs = {name: trial.log for name, trial in trials.items()}
+    return Outcome(
+        metrics=[*judged, *_safety(trials), *shared_metrics(list(logs.values()))],
+        series=_series(trials),
+        figures=lambda: [f for family in FAMILIES for f in family.figures(trials)],
+        replay=lambda: _replay(cell.model, logs),
+        picture=lambda: _picture(cell),
+        facts={"robot": repr(arm), "simulated time": _simulated(logs)},
+    )
+
+
+def _try(cell: ArmCell, case: Case, options: Options, window: Viewer | None) -> Trial:
+    off = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    cell.model.opt.disableflags = 0 if case.contact else off
+    if case.start is not None:
+        cell.reset(case.start)
+    make: Callable[[], object] = case.resolver or (
+        lambda: make_resolver(options.resolver)
+    )
+    resolver = make()
+    stack = case.make(cell.observe().q, cell.data.time)
+    controller = Controller(case.robot or cell.robot, stack[0], resolver)
+    touch = _Touch(window)
+    log = run(
+        cell,
+        controller,
+        min(case.duration, options.duration or np.inf),
+        script=stack[1],
+        sites=(TIP,),
+        watch=touch,
+        label=f"constraints: {case.name}",
+        quiet=options.quiet,
+    )
+    return Trial(case, stack, log, np.array(touch.force), resolver)
+
+
+def _safety(trials: dict[str, Trial]) -> list[Metric]:
+    """What holds for every case: speeds within limits, higher levels undisturbed."""
+    speed = max(
+        float((np.abs(t.log.v) / t.log.robot.v_max).max()) for t in trials.values()
+    )
+    disturbed = max(soundness(trial) for trial in trials.values())
+    return [
+        Metric("joint_speed_max_fraction", speed, 1.0),
+        Metric("soundness_relative", disturbed, SOUND),
+    ]
+
+
+def _series(trials: dict[str, Trial]) -> dict[str, Array]:
+    named = {f"{name}/touch": trial.touch for name, trial in trials.items()}
+    for name, trial in trials.items():
+        named |= {f"{name}/{key}": v for key, v in trial.log.arrays().items()}
+    return named
+
+
+def _simulated(logs: dict[str, Log]) -> str:
+    return f"{sum(log.t.size for log in logs.values()) * 1e-3:.1f} s"
+
+
+def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
+    """All runs in a row, each with the way of the tip."""
+    times, qpos, traces, begin = [], [], [], 0.0
+    for i, (name, log) in enumerate(logs.items()):
+        t = begin + log.t - log.t[0]
+        times.append(t)
+        qpos.append(log.qpos)
+        way = log.p[TIP][::20]
+        colour = COLOURS[i % len(COLOURS)]
+        traces.append(Trace(f"tip: {name}", way, colour, 0.004, t[::20]))
+        begin = t[-1] + PAUSE
+    stamps, states = np.concatenate(times), np.concatenate(qpos)
+    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+
+
+def _picture(cell: ArmCell) -> Image:
+    """The cell as it stands at the end."""
+    return render(cell.model, cell.data, _camera(), 1280, 800)
+
+
+def _camera() -> mujoco.MjvCamera:
+    """From the side, so that the plate's tilt shows."""
+    camera = mujoco.MjvCamera()
+    camera.azimuth, camera.elevation, camera.distance = 118.0, -16.0, 2.4
+    camera.lookat[:] = [0.55, 0.0, 0.55]
+    return camera
+
+
+DEMO = Demo(
+    "constraints",
+    "planes, joint limits and hybrid force: the paper's constraints, one by one",
+    _run,
+)

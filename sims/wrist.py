@@ -1,0 +1,185 @@
+"""A force/torque sensor between an arm and its tool, as MuJoCo feels it."""
+
+from __future__ import annotations
+
+from typing import final
+
+import mujoco
+import numpy as np
+
+from wbc import InputError, UnknownName
+from wbc.arrays import Array, positive
+
+__all__ = ["WristSensor"]
+
+PARTS = {
+    "force": mujoco.mjtSensor.mjSENS_FORCE,
+    "torque": mujoco.mjtSensor.mjSENS_TORQUE,
+    "linear acceleration": mujoco.mjtSensor.mjSENS_FRAMELINACC,
+    "angular acceleration": mujoco.mjtSensor.mjSENS_FRAMEANGACC,
+    "angular velocity": mujoco.mjtSensor.mjSENS_FRAMEANGVEL,
+}
+"""What the engine reads at the site; the last three as an accelerometer would."""
+
+
+@final
+class WristSensor:
+    """The wrench that a tool exerts on its surroundings, perfect by default.
+
+    The reading is compensated for the tool's weight and inertial forces, with the
+    masses of the controller's model and an accelerometer in the sensor, and tared at
+    rest when the cell is reset. It is late by one tick, as the engine's sensors are.
+
+    Args:
+        site: where it sits, on a body without joints that carries the tool.
+        name: under which controllers find its wrench.
+        force_noise: standard deviation of each force [N].
+        torque_noise: standard deviation of each moment [Nm].
+        force_bias: largest constant error of each force, drawn uniformly [N].
+        torque_bias: largest constant error of each moment [Nm].
+        cutoff: of a first-order low-pass filter [Hz]; infinite for none.
+        tare: whether the reading at reset counts as zero, bias included.
+        seed: of bias and noise.
+
+    Raises:
+        InputError: a negative number; at mounting, a site on a body with joints.
+        UnknownName: at mounting, there is no such site.
+    """
+
+    def __init__(
+        self,
+        site: str = "wrist_sensor",
+        *,
+        name: str = "wrist",
+        force_noise: float = 0.0,
+        torque_noise: float = 0.0,
+        force_bias: float = 0.0,
+        torque_bias: float = 0.0,
+        cutoff: float = np.inf,
+        tare: bool = True,
+        seed: int = 0,
+    ) -> None:
+        self.site, self.name, self.tare = site, name, tare
+        self._noise = _both(force_noise, torque_noise, "noise")
+        self._bias = _both(force_bias, torque_bias, "bias")
+        self.cutoff = np.inf if cutoff == np.inf else positive(cutoff, "cutoff")
+        self._seed = seed
+
+    def mount(self, spec: mujoco.MjSpec) -> None:
+        """Add the engine's sensors to a scene, before it is compiled.
+
+        Raises:
+            UnknownName: the scene has no such site.
+        """
+        sites = {site.name for site in spec.sites}
+        if self.site not in sites:
+            raise UnknownName("site", self.site, sorted(sites))
+        for part, kind in PARTS.items():
+            spec.add_sensor(
+                name=self._part(part),
+                type=kind,
+                objtype=mujoco.mjtObj.mjOBJ_SITE,
+                objname=self.site,
+            )
+
+    def bind(self, model: mujoco.MjModel) -> None:
+        """Learn the tool's inertia from the compiled scene, as the controller knows it.
+
+        Raises:
+            InputError: the sensor's body has joints, so that they carry the tool.
+        """
+        self._id = model.site(self.site).id
+        body = int(model.site_bodyid[self._id])
+        if model.body_jntnum[body]:
+            raise InputError(
+                f"site '{self.site}' of sensor '{self.name}' lies on body "
+                f"'{model.body(body).name}', which has joints: a force sensor reads "
+                "between a body without joints and its parent."
+            )
+        self._dt = model.opt.timestep
+        self._mass, self._centre, self._inertia = _tool(model, body, self._id)
+
+    def reset(self, data: mujoco.MjData) -> None:
+        """Start bias, noise and filter again; the arm must be at rest and held."""
+        self._rng = np.random.default_rng(self._seed)
+        self._zero = self._rng.uniform(-self._bias, self._bias)
+        if self.tare:
+            self._zero = -self._wrench(data)
+        self._filtered: Array | None = None
+
+    def read(self, data: mujoco.MjData) -> Array:
+        """Wrench (6,) of the tool ON its surroundings, at the site, world axes."""
+        wrench = self._wrench(data) + self._zero
+        if self._noise.any():
+            wrench = wrench + self._rng.normal(0.0, self._noise)
+        if self._filtered is None or self.cutoff == np.inf:
+            self._filtered = wrench
+        else:
+            share = 1.0 - np.exp(-2.0 * np.pi * self.cutoff * self._dt)
+            self._filtered = self._filtered + share * (wrench - self._filtered)
+        return self._filtered.copy()
+
+    def _wrench(self, data: mujoco.MjData) -> Array:
+        """What of the arm's push on the tool passes on to the surroundings.
+
+        Here, and nowhere else, signs are settled. The engine reports what the parent
+        body exerts on the tool, so what the tool does not need for itself it exerts
+        on its surroundings: f = reading - m (a - g), without a flip of the sign.
+        The engine's acceleration of a frame is a - g already.
+        """
+        R = data.site_xmat[self._id].reshape(3, 3)
+        a, alpha = (
+            self._data(data, "linear acceleration"),
+            self._data(data, "angular acceleration"),
+        )
+        omega = self._data(data, "angular velocity")
+        c, I_W = R @ self._centre, R @ self._inertia @ R.T
+        at_centre = a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c))
+        force = self._mass * at_centre
+        spin = I_W @ alpha + np.cross(omega, I_W @ omega)
+        moment = np.cross(c, force) + spin
+        return np.concatenate(
+            [
+                R @ self._data(data, "force") - force,
+                R @ self._data(data, "torque") - moment,
+            ]
+        )
+
+    def _data(self, data: mujoco.MjData, part: str) -> Array:
+        return np.array(data.sensor(self._part(part)).data)
+
+    def _part(self, part: str) -> str:
+        return f"{self.name} {part}"
+
+
+def _both(force: float, torque: float, what: str) -> Array:
+    """One number a component (6,)."""
+    force = positive(force, f"force_{what}", zero=True)
+    torque = positive(torque, f"torque_{what}", zero=True)
+    return np.repeat([force, torque], 3)
+
+
+def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
+    """Mass, centre (3,) and inertia about it (3, 3) of a body and all it carries.
+
+    In the axes of the site, at the posture of the compiled scene.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    p, R = data.site_xpos[site], data.site_xmat[site].reshape(3, 3)
+    carried = [b for b in range(model.nbody) if _carries(model, body, b)]
+    m = model.body_mass[carried]
+    points = (data.xipos[carried] - p) @ R
+    centre = m @ points / max(float(m.sum()), 1e-12)
+    inertia = np.zeros((3, 3))
+    for b, mass, r in zip(carried, m, points - centre, strict=True):
+        turn = R.T @ data.ximat[b].reshape(3, 3)
+        inertia += turn @ np.diag(model.body_inertia[b]) @ turn.T
+        inertia += mass * (r @ r * np.eye(3) - np.outer(r, r))
+    return float(m.sum()), centre, inertia
+
+
+def _carries(model: mujoco.MjModel, body: int, other: int) -> bool:
+    while other > body:
+        other = int(model.body_parentid[other])
+    return other == body

@@ -1,0 +1,248 @@
+"""Motion in some directions and force in the others, as one task."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from tasks.forcelaw import ForceLaw
+from tasks.touch import TouchTask
+from wbc import PD, FrameState, Robot, Rows, State
+from wbc.arrays import Array, frozen, per_row, positive, rotation
+from wbc.errors import InputError
+
+__all__ = ["HybridForceMotion"]
+
+STILL = np.zeros(3)
+LOST = 0.05
+"""Contact counts as lost once the force stayed low for so long [s]."""
+
+
+@final
+class HybridForceMotion(TouchTask):
+    """A frame moves along some axes of D and presses along the others.
+
+    P4 eqs. (9) and (19) with Omega_f = R S R^T, Omega_m = I - Omega_f; rows of D are
+    either motion rows (PD on position and orientation) or force rows. In a force row
+    J_f vdot + drift = (J_f M^-1 J_f^T) (f* - F_s) - kd v, while the torque carries
+    J_f^T F_s for what is measured already: together they are Omega_f f* outside
+    Lambda, so that a rigid surface feels exactly f*. Yet before contact, where F_s is
+    0, nothing leaks into other directions, and torque limits know of all of it. The
+    last term is Khatib's damping (1987).
+
+    While nothing is felt, force rows search: they move along F_d at the speed
+    `approach`, and the integral term of the force law learns what holds them back.
+
+    Args:
+        frame: name of the robot's frame F.
+        target: (3,) p_d in the world [m]; only its motion rows matter.
+        force: (3,) or (6,) F_d in D, robot on environment, about F's origin [N, Nm].
+        selection: (3,) or (6,) diagonal of S, 1 for a force row, 0 for a motion row.
+        orientation: (3, 3) R_d in the world; needed for six rows, unused for three.
+        axes: (3, 3) R_WD; the world's by default.
+        law: of the force.
+        stiffness: of the motion rows [1/s^2].
+        damping: of the motion rows [1/s], critical by default.
+        force_damping: kd of the force rows [1/s].
+        approach: speed of the search [m/s].
+        threshold: of the force that counts as contact [N, Nm].
+        sensor: name of the force sensor.
+        sensor_frame: where it sits on the robot.
+        name: "<frame> hybrid" by default.
+
+    Raises:
+        InputError: shapes that do not fit, a selection that is not of 0 and 1, no
+            orientation for six rows, unusable gains; at the first tick, no such sensor.
+    """
+
+    def __init__(
+        self,
+        frame: str,
+        target: ArrayLike,
+        force: ArrayLike,
+        selection: Sequence[int] = (0, 0, 1),
+        *,
+        orientation: ArrayLike | None = None,
+        axes: ArrayLike | None = None,
+        law: ForceLaw | None = None,
+        stiffness: ArrayLike = 400.0,
+        damping: ArrayLike | None = None,
+        force_damping: ArrayLike = 60.0,
+        approach: float = 0.01,
+        threshold: float = 1.0,
+        sensor: str = "wrist",
+        sensor_frame: str = "wrist_sensor",
+        name: str | None = None,
+    ) -> None:
+        name = name or f"{frame} hybrid"
+        S = _selection(selection, name)
+        super().__init__(name, "m, N", frame, S.size, axes, sensor, sensor_frame)
+        self._S = S
+        self._f, self._m = np.flatnonzero(S), np.flatnonzero(S == 0.0)
+        self.law = law or ForceLaw()
+        self.motion_law = PD(stiffness, damping)
+        self.force_damping = per_row(force_damping, "force_damping")
+        self.approach = positive(approach, "approach", zero=True)
+        self.threshold = positive(threshold, "threshold")
+        self._target = np.zeros((4, 6))
+        self._R_d = np.eye(3)
+        if S.size == 6 and orientation is None:
+            raise InputError(f"'{name}' has six rows: give it an orientation.")
+        self.set_target(target, orientation)
+        self.set_force(force)
+        self.reset()
+
+    def set_target(
+        self,
+        target: ArrayLike,
+        orientation: ArrayLike | None = None,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+    ) -> None:
+        """Move the target of the motion rows; angular ones are at rest.
+
+        Raises:
+            InputError: unusable values; the target stays as it was.
+        """
+        p = frozen(target, (3,), f"target of '{self.name}'")
+        v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
+        a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
+        if orientation is not None:
+            self._R_d = rotation(orientation, f"target of '{self.name}'")
+        self._target[:3, :3] = p, v, a
+
+    def set_force(self, force: ArrayLike) -> None:
+        """Change F_d, (3,) or (6,) in D; motion rows ignore theirs.
+
+        Raises:
+            InputError: not one number a row, or not finite; the force stays as it was.
+        """
+        self._force = frozen(force, (self.size,), f"force of '{self.name}'")
+
+    def reset(self) -> None:
+        """Forget the integral term and the contact."""
+        self._held, self._touching, self._low = np.zeros(self._f.size), False, 0.0
+        self._measured, self._felt = np.zeros(self._f.size), np.zeros(6)
+        self._p = self._target[0, :3].copy()
+
+    @property
+    def felt(self) -> Array:
+        """Wrench (6,) on the surroundings about F's origin, at the last tick, world."""
+        return self._felt.copy()
+
+    @property
+    def position(self) -> Array:
+        """Where F's origin was at the last tick, (3,) [m]."""
+        return self._p.copy()
+
+    @property
+    def touching(self) -> bool:
+        """Whether contact was felt at the last tick."""
+        return self._touching
+
+    @property
+    def Omega_f(self) -> Array:
+        """R S R^T, (m, m) in world axes."""
+        R = np.kron(np.eye(self.size // 3), self._R)
+        return R @ np.diag(self._S) @ R.T
+
+    @property
+    def Omega_m(self) -> Array:
+        """I - Omega_f, (m, m) in world axes."""
+        return np.eye(self.size) - self.Omega_f
+
+    def check(self, robot: Robot) -> None:
+        """Frames exist, and gains are one number or one a row of their kind."""
+        super().check(robot)
+        for gain, rows in (
+            (self.motion_law.stiffness, self._m),
+            (self.motion_law.damping, self._m),
+            (self.force_damping, self._f),
+        ):
+            if gain.size not in (1, rows.size):
+                raise InputError(
+                    f"'{self.name}' has {rows.size} such rows and {gain.size} gains: "
+                    "give one number, or one a row."
+                )
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Write the rows."""
+        F = self._kinematics(state, rows)
+        self._motion(F, rows)
+        if self._f.size:
+            self._press(state, F, rows)
+        rows.upper[:] = rows.lower
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Add J_f^T F_s to the torques, and move on contact and integral term."""
+        if not self._f.size:
+            return
+        if self._touching:
+            torque += self._J.T @ self._measured
+        self._held = self.law.integrate(self._held, self._held_rate, state.dt)
+        self._feel(state.dt)
+
+    def _motion(self, F: FrameState, rows: Rows) -> None:
+        p, v, a = self._target[:3]
+        error, self._p = np.zeros(6), F.p
+        error[:3] = F.p - p[:3]
+        if self.size == 6:
+            error[3:] = pin.log3(F.R @ self._R_d.T)
+        rows.error[:] = self._split(error)
+        rows.rate[:] -= self._split(v)
+        m = self._m
+        wish = self.motion_law.acceleration(rows.error[m], rows.rate[m])
+        rows.lower[m] = self._split(a)[m] + wish - rows.drift[m]
+
+    def _press(self, state: State, F: FrameState, rows: Rows) -> None:
+        f = self._f
+        self._J = J = rows.A[f]
+        self._felt = self._wrench(state, F)
+        self._measured = self._split(self._felt)[f]
+        speed = self._split(F.V)[f]
+        desired = self._force[f]
+        mobility = J @ np.linalg.solve(state.M, J.T)
+        rows.rate[f] = 0.0
+        rows.error[f] = self._measured - desired
+        if self._touching:
+            wish = self.law.command(desired, self._measured, self._held)
+            acceleration = mobility @ (wish - self._measured)
+            acceleration -= self.force_damping * speed
+            self._held_rate = self.law.integral * (desired - self._measured)
+        else:
+            late = self._search_velocity(desired) - speed
+            acceleration = self.force_damping * late + mobility @ self._held
+            pull = self.force_damping**2 / 4.0 * late  # critically damped
+            self._held_rate = np.array(np.linalg.lstsq(mobility, pull, rcond=1e-9)[0])
+        rows.lower[f] = acceleration - rows.drift[f]
+
+    def _search_velocity(self, desired: Array) -> Array:
+        """Of the force rows before contact: along F_d, angular ones at rest."""
+        linear = np.where(self._f < 3, desired, 0.0)
+        size = float(np.linalg.norm(linear))
+        return self.approach / size * linear if size > 0.0 else linear
+
+    def _feel(self, dt: float) -> None:
+        """Contact begins at the threshold and ends when the force stays below half."""
+        size = float(np.linalg.norm(self._measured))
+        if size >= self.threshold:
+            if not self._touching and self.law.integral == 0.0:
+                self._held[:] = 0.0
+            self._touching, self._low = True, 0.0
+        elif size < 0.5 * self.threshold:
+            self._low += dt
+            self._touching = self._touching and self._low < LOST
+
+
+def _selection(selection: Sequence[int], task: str) -> Array:
+    S = np.array(selection, dtype=np.float64)
+    if S.shape not in ((3,), (6,)) or not np.isin(S, (0.0, 1.0)).all():
+        raise InputError(
+            f"selection of '{task}' must be three or six of 0 (motion) and 1 (force), "
+            f"got {selection!r}."
+        )
+    return S

@@ -1,0 +1,221 @@
+"""A point that gives way to forces: by torque (impedance) or by moving (admittance)."""
+
+from __future__ import annotations
+
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tasks.touch import TouchTask
+from wbc import PD, Rows, State
+from wbc.arrays import Array, frozen, positive
+from wbc.errors import InputError
+
+__all__ = ["Admittance", "Impedance"]
+
+STILL = np.zeros(3)
+
+
+class _Compliant(TouchTask):
+    """What the two share: a mass, a damper and a spring to a moving target."""
+
+    def __init__(
+        self,
+        frame: str,
+        target: ArrayLike,
+        force: ArrayLike,
+        gains: tuple[ArrayLike, ArrayLike, ArrayLike | None],
+        axes: ArrayLike | None,
+        sensor: str,
+        sensor_frame: str,
+        name: str,
+    ) -> None:
+        super().__init__(name, "m", frame, 3, axes, sensor, sensor_frame)
+        mass, stiffness, damping = gains
+        self.mass = _gain(mass, f"mass of '{name}'", zero=False)
+        self.stiffness = _gain(stiffness, f"stiffness of '{name}'")
+        critical = 2.0 * np.sqrt(self.mass * self.stiffness)
+        given = critical if damping is None else damping
+        self.damping = _gain(given, f"damping of '{name}'")
+        self._target = np.zeros((3, 3))
+        self.set_target(target)
+        self.set_force(force)
+
+    def set_target(
+        self,
+        target: ArrayLike,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+    ) -> None:
+        """Move x_d: position [m], velocity, acceleration, (3,) in the world.
+
+        Raises:
+            InputError: unusable values; the target stays as it was.
+        """
+        p = frozen(target, (3,), f"target of '{self.name}'")
+        v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
+        a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
+        self._target[:] = p, v, a
+
+    def set_force(self, force: ArrayLike) -> None:
+        """Change h_d (3,) in D, robot on environment [N].
+
+        Raises:
+            InputError: not of shape (3,) or not finite; the force stays as it was.
+        """
+        self._force = frozen(force, (3,), f"force of '{self.name}'")
+
+    def reset(self) -> None:
+        """Nothing is remembered."""
+
+    def _respond(self, x: Array, v: Array, h: Array) -> Array:
+        """Acceleration (3,) in D of the mass at x, v (world) under h (D)."""
+        p_d, v_d, a_d = self._target
+        spring = self.stiffness * (self._R.T @ (x - p_d))
+        damper = self.damping * (self._R.T @ (v - v_d))
+        pull = self._force - h - damper - spring
+        acceleration: Array = self._R.T @ a_d + pull / self.mass
+        return acceleration
+
+
+@final
+class Impedance(_Compliant):
+    """A frame's origin behaves as a mass on a spring and a damper (Hogan 1985).
+
+    Md (xdd - xdd_d) + Kd (xd - xd_d) + Kp (x - x_d) = h_d - h with h the measured force
+    of the robot on its surroundings: P0 eq. (20), mended. Its J^T h is added to the
+    torques, without which the surroundings would be felt twice. Where h_d should be
+    exerted exactly, Kp must be 0.
+
+    Args:
+        frame: name of the robot's frame.
+        target: (3,) x_d [m].
+        mass: Md [kg], one number or one for each axis of D.
+        stiffness: Kp [N/m].
+        damping: Kd [N s/m]; critical, 2 sqrt(Md Kp), by default.
+        force: (3,) h_d in D [N]; none by default.
+        axes: (3, 3) R_WD; the world's by default.
+        sensor: name of the force sensor.
+        sensor_frame: where it sits on the robot.
+        name: "<frame> impedance" by default.
+
+    Raises:
+        InputError: unusable values; at the first tick, no such sensor.
+    """
+
+    def __init__(
+        self,
+        frame: str,
+        target: ArrayLike,
+        *,
+        mass: ArrayLike = 10.0,
+        stiffness: ArrayLike = 500.0,
+        damping: ArrayLike | None = None,
+        force: ArrayLike = STILL,
+        axes: ArrayLike | None = None,
+        sensor: str = "wrist",
+        sensor_frame: str = "wrist_sensor",
+        name: str | None = None,
+    ) -> None:
+        gains = (mass, stiffness, damping)
+        name = name or f"{frame} impedance"
+        super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Write the rows."""
+        F = self._kinematics(state, rows)
+        self._J, self._h = F.J, self._wrench(state, F)
+        rows.error[:] = self._R.T @ (F.p - self._target[0])
+        rows.rate[:] -= self._R.T @ self._target[1]
+        wish = self._respond(F.p, F.V[:3], self._R.T @ self._h[:3])
+        rows.lower[:] = rows.upper[:] = wish - rows.drift
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Add J^T h to the torques."""
+        del state
+        torque += self._J.T @ self._h
+
+
+@final
+class Admittance(_Compliant):
+    """A frame's origin follows a reference that gives way to the measured force.
+
+    The reference x_c obeys the impedance's equation and is integrated once a tick; a
+    stiff PD follows it. Rather than by torques the robot complies by moving, which
+    suits arms with much friction; it must not be faster than the PD.
+
+    Args:
+        frame: name of the robot's frame.
+        target: (3,) x_d [m].
+        mass: Md [kg], one number or one for each axis of D.
+        stiffness: Kp [N/m].
+        damping: Kd [N s/m]; critical, 2 sqrt(Md Kp), by default.
+        force: (3,) h_d in D [N]; none by default.
+        following: stiffness of the PD that follows x_c [1/s^2].
+        axes: (3, 3) R_WD; the world's by default.
+        sensor: name of the force sensor.
+        sensor_frame: where it sits on the robot.
+        name: "<frame> admittance" by default.
+
+    Raises:
+        InputError: unusable values; at the first tick, no such sensor.
+    """
+
+    def __init__(
+        self,
+        frame: str,
+        target: ArrayLike,
+        *,
+        mass: ArrayLike = 10.0,
+        stiffness: ArrayLike = 500.0,
+        damping: ArrayLike | None = None,
+        force: ArrayLike = STILL,
+        following: float = 2500.0,
+        axes: ArrayLike | None = None,
+        sensor: str = "wrist",
+        sensor_frame: str = "wrist_sensor",
+        name: str | None = None,
+    ) -> None:
+        gains = (mass, stiffness, damping)
+        name = name or f"{frame} admittance"
+        super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
+        self.following = PD(positive(following, "following"))
+        self.reset()
+
+    def reset(self) -> None:
+        """Let the reference start from where the robot is at the next tick."""
+        self._reference: tuple[Array, Array] | None = None
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Write the rows."""
+        F = self._kinematics(state, rows)
+        if self._reference is None:
+            self._reference = F.p.copy(), F.V[:3].copy()
+        x, v = self._reference
+        h = self._R.T @ self._wrench(state, F)[:3]
+        self._acceleration = self._respond(x, v, h)
+        rows.error[:] = self._R.T @ (F.p - x)
+        rows.rate[:] -= self._R.T @ v
+        wish = self.following.acceleration(rows.error, rows.rate)
+        rows.lower[:] = rows.upper[:] = self._acceleration + wish - rows.drift
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Move the reference on by one tick; not by what is not finite."""
+        del torque
+        if self._reference is None or not np.isfinite(self._acceleration).all():
+            return
+        x, v = self._reference
+        v = v + state.dt * (self._R @ self._acceleration)
+        self._reference = x + state.dt * v, v
+
+
+def _gain(value: ArrayLike, what: str, *, zero: bool = True) -> Array:
+    """One number an axis (3,)."""
+    try:
+        gain = frozen(np.broadcast_to(value, (3,)), (3,), what)
+    except ValueError as error:
+        raise InputError(f"{what} must be one number, or three.") from error
+    if (gain < 0.0).any() or (not zero and (gain == 0.0).any()):
+        raise InputError(f"{what} must be {'at least' if zero else 'above'} 0.")
+    return gain

@@ -1,0 +1,114 @@
+"""What tasks on forces share: a frame, its axes, and the sensor that feels for it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from wbc import FrameState, Robot, Rows, State, Task
+from wbc.arrays import Array, rotation
+from wbc.errors import InputError
+
+__all__ = ["TouchTask"]
+
+AXES = ("x", "y", "z")
+
+
+class TouchTask(Task):
+    """A task on a frame F that feels the wrench of the robot on its surroundings.
+
+    Its rows are the twist of F in task axes D: J_D = blockdiag(R, R)^T J, so that each
+    is a direction of D, and a gain matrix R K R^T of the papers is one gain a row.
+
+    Args:
+        name: how reports call it.
+        unit: of each row's error.
+        frame: name of F.
+        rows: 3 for the linear rows alone, 6 with the angular ones.
+        axes: (3, 3) R_WD; the world's by default.
+        sensor: name of the force sensor in `State.wrenches`.
+        sensor_frame: where it sits on the robot; its wrench is about this point.
+
+    Raises:
+        InputError: the axes are no rotation; at the first tick, the sensor is missing.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        unit: str,
+        frame: str,
+        rows: int,
+        axes: ArrayLike | None,
+        sensor: str,
+        sensor_frame: str,
+    ) -> None:
+        super().__init__(name, unit, (frame, sensor_frame))
+        self.frame, self.sensor, self.sensor_frame = frame, sensor, sensor_frame
+        self.size = rows
+        self._R = np.eye(3)
+        if axes is not None:
+            self.set_axes(axes)
+
+    def set_axes(self, axes: ArrayLike) -> None:
+        """Turn the task axes D: (3, 3) R_WD; they count as fixed during a tick.
+
+        Raises:
+            InputError: no rotation; the axes stay as they were.
+        """
+        self._R = rotation(axes, f"axes of '{self.name}'")
+
+    @property
+    def axes(self) -> Array:
+        """R_WD, (3, 3)."""
+        return self._R.copy()
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """Linear directions, then angular ones."""
+        del robot
+        kinds = ("p", "R")[: self.size // 3]
+        return tuple(f"{kind} {axis}" for kind in kinds for axis in AXES)
+
+    @abstractmethod
+    def reset(self) -> None:
+        """Forget what was remembered of earlier ticks."""
+
+    def _split(self, twist: Array) -> Array:
+        """A twist, wrench or drift (6,) as rows in D, (m,)."""
+        return (twist.reshape(2, 3) @ self._R).ravel()[: self.size]
+
+    def _join(self, rows: Array) -> Array:
+        """Rows in D (m,) as a wrench (6,) in world axes."""
+        wrench = np.zeros(6)
+        wrench[: self.size] = (rows.reshape(-1, 3) @ self._R.T).ravel()
+        return wrench
+
+    def _kinematics(self, state: State, rows: Rows) -> FrameState:
+        """Write A and drift, and the rates of a target at rest."""
+        F = state.frame(self.frame)
+        n = state.robot.nv
+        for k in range(0, self.size, 3):
+            rows.A[k : k + 3] = self._R.T @ F.J[k : k + 3].reshape(3, n)
+        rows.drift[:] = self._split(F.drift)
+        rows.rate[:] = self._split(F.V)
+        return F
+
+    def _wrench(self, state: State, F: FrameState) -> Array:
+        """Measured wrench (6,) about F's origin, of the robot ON its surroundings."""
+        measured = state.wrenches.get(self.sensor)
+        if measured is None:
+            known = ", ".join(state.wrenches) or "(none)"
+            raise InputError(
+                f"task '{self.name}' needs force sensor '{self.sensor}', but the "
+                f"controller was told of: {known}. Pass wrenches={{'{self.sensor}': "
+                "...}, or name another one with sensor=..."
+            )
+        f0, f1, f2 = measured[:3].tolist()
+        a0, a1, a2 = (state.frame(self.sensor_frame).p - F.p).tolist()
+        wrench = measured.copy()
+        wrench[3] += a1 * f2 - a2 * f1
+        wrench[4] += a2 * f0 - a0 * f2
+        wrench[5] += a0 * f1 - a1 * f0
+        return wrench
