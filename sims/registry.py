@@ -13,6 +13,7 @@ MODULES = {
     "welding": "sims.welding.demo",
     "constraints": "sims.constraints.demo",
     "grasping": "sims.grasping.demo",
+    "contact": "sims.contact.demo",
 }
 
 
