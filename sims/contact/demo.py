@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Final, Protocol
 
 import mujoco
@@ -13,7 +14,7 @@ from sims.cell import ArmCell, Cell
 from sims.constraints.case import READY
 from sims.contact.crank import SUNK, Belief, Turning, believed_cranks, handle
 from sims.contact.figures import figures
-from sims.contact.peg import ABOVE, DOWN, Insertion, Search, believed_holes
+from sims.contact.peg import ABOVE, DOWN, Insertion, Search, Stay, believed_holes
 from sims.contact.results import Attempt, Crank, metrics
 from sims.contact.scene import CRANK_JOINT, TIP
 from sims.demo import Demo, Options, Outcome
@@ -97,9 +98,12 @@ def _attempt(
     search = Search(hole)
     logs = [_run(cell, search, options, window, "search")]
     if not search.sunk:
+        if options.duration is None:
+            sys.stderr.write(f"wbc: {search.report}\n")
         return Attempt(hole, search, None, tuple(logs))
     insertion = Insertion(search.surface)
     logs.append(_run(cell, insertion, options, window, "insert"))
+    logs.append(_run(cell, Stay(insertion.end), options, window, "stay"))
     return Attempt(hole, search, insertion, tuple(logs))
 
 
@@ -148,7 +152,7 @@ def posture_at(robot: Robot, p: Array) -> Array:
 def _named(attempts: list[Attempt], cranks: list[Crank]) -> dict[str, Log]:
     named = {f"crank {i + 1}": crank.log for i, crank in enumerate(cranks)}
     for i, attempt in enumerate(attempts):
-        phases = zip(("search", "insertion"), attempt.logs, strict=False)
+        phases = zip(("search", "insertion", "stay"), attempt.logs, strict=False)
         named |= {f"peg {i + 1} {phase}": log for phase, log in phases}
     return named
 
@@ -164,7 +168,9 @@ def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank])
         qpos.append(log.qpos)
         colour = "#0072B2" if name.startswith("crank") else "#D55E00"
         traces.append(Trace(name, log.p[TIP][::20], colour, 0.0015, t[::20]))
-        begin = t[-1] + (0.01 if name.endswith("search") else PAUSE)
+        begin = t[-1] + (
+            PAUSE if name.startswith("crank") or name.endswith("stay") else 0.01
+        )
     stamps, states = np.concatenate(times), np.concatenate(qpos)
     return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
 

@@ -9,11 +9,20 @@ import numpy as np
 from sims.cell import Cell
 from sims.constraints.case import limits
 from sims.contact.scene import HOLE, TIP
-from tasks import Damping, ForceLaw, HybridForceMotion
+from tasks import Damping, ForceLaw, FramePose, HybridForceMotion
 from wbc import Hierarchy, Solution
 from wbc.arrays import Array
 
-__all__ = ["ABOVE", "DEPTH", "DOWN", "ERROR", "Insertion", "Search", "believed_holes"]
+__all__ = [
+    "ABOVE",
+    "DEPTH",
+    "DOWN",
+    "ERROR",
+    "Insertion",
+    "Search",
+    "Stay",
+    "believed_holes",
+]
 
 DOWN: Final = np.diag([1.0, -1.0, -1.0])
 """Axes of the tip with the peg pointing down."""
@@ -41,6 +50,9 @@ DEPTH: Final = 0.020
 """To which it is to go [m]."""
 STIFFNESS: Final = 3600.0
 """Of the motion rows [1/s^2]."""
+YIELD, CREEP = 60.0, 150.0
+"""Damping of the force rows across and along the hole [1/s]: the second one keeps a peg
+that meets no resistance at some 10 mm/s."""
 
 
 def believed_holes(seed: int, count: int) -> list[Array]:
@@ -105,6 +117,18 @@ class Search:
         del cell, solution
         return not self.sunk and self._angle * PITCH < 2.0 * np.pi * WIDEST
 
+    @property
+    def report(self) -> str:
+        """What became of the search, in a sentence."""
+        if self.sunk:
+            return "the peg found the hole."
+        if np.isnan(self._touched):
+            return "the peg felt no surface. Is the block where it should be?"
+        return (
+            f"no hole within {WIDEST * 1e3:.0f} mm of where it was believed to be: the "
+            "search has stopped on the surface. Look again for the hole's place."
+        )
+
     def _wind(self, dt: float) -> None:
         """Further along r = pitch angle / 2 pi, at constant speed."""
         growth = PITCH / (2.0 * np.pi)
@@ -128,7 +152,7 @@ class Insertion:
         duration: longest [s].
     """
 
-    duration = 6.0
+    duration = 8.0
 
     def __init__(self, surface: float) -> None:
         self._end = surface - DEPTH
@@ -141,6 +165,7 @@ class Insertion:
             axes=DOWN,
             law=_law(),
             stiffness=STIFFNESS,
+            force_damping=(YIELD, YIELD, CREEP),
             approach=APPROACH,
             name="insert",
         )
@@ -149,10 +174,42 @@ class Insertion:
     def script(self, t: float) -> None:
         """Nothing moves but the peg."""
 
+    @property
+    def end(self) -> Array:
+        """Where the tip was at last (3,) [m]."""
+        return self._task.position
+
     def watch(self, cell: Cell, solution: Solution) -> bool:
         """False once the peg is deep enough."""
         del cell, solution
         return bool(self._task.position[2] > self._end)
+
+
+@final
+class Stay:
+    """Hold the peg where it is.
+
+    Args:
+        p: (3,) place of its end [m].
+
+    Attributes:
+        hierarchy: the stack.
+        duration: of the phase [s].
+    """
+
+    duration = 0.3
+
+    def __init__(self, p: Array) -> None:
+        pose = FramePose(TIP, p, DOWN, stiffness=STIFFNESS, name="stay")
+        self.hierarchy: Hierarchy = limits() >> pose >> Damping()
+
+    def script(self, t: float) -> None:
+        """Nothing moves."""
+
+    def watch(self, cell: Cell, solution: Solution) -> bool:
+        """The phase goes on to its end."""
+        del cell, solution
+        return True
 
 
 def _law() -> ForceLaw:

@@ -34,7 +34,7 @@ class Attempt:
         believed: (3,) where the hole was believed to be [m].
         search: the first phase.
         insertion: the second one; None if the peg never sank.
-        logs: one or two.
+        logs: of the search, the insertion and the rest that follows, as far as it came.
     """
 
     believed: Array

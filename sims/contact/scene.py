@@ -83,7 +83,8 @@ def add_hole(
     """A ring of boxes whose inner faces surround a hole along -z from the origin.
 
     The boxes overlap, which does not narrow the hole: it is what no inner face's
-    half-space covers.
+    half-space covers. Soft friction (`solreffriction`) keeps a peg that slides from
+    losing contact for single steps.
     """
     half = 0.5 * (outer - radius)
     for k in range(SIDES):
@@ -108,7 +109,7 @@ def add_hole(
                 condim=3,
                 friction=[FRICTION, FRICTION, 0.005, 0.0001, 0.0001],
                 solref=[0.01, 1.0],
-                solreffriction=[0.1, 1.0],
+                solreffriction=[0.3, 1.0],
             )
 
 

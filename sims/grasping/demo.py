@@ -47,7 +47,10 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
     logs = [result.log for result in results]
     simulated = sum(log.t.size for log in logs) * 1e-3
     return Outcome(
-        metrics=[*metrics(results), *shared_metrics(logs)],
+        metrics=[
+            *metrics(results, make_resolver(options.resolver)),
+            *shared_metrics(logs),
+        ],
         series=series,
         figures=lambda: figures(results),
         replay=lambda: replay(results),

@@ -7,6 +7,7 @@ from typing import Final, final
 
 import numpy as np
 
+from sims.constraints.soundness import soundness_along
 from sims.grasping.cylinder import Cylinder
 from sims.grasping.gripper import Grip
 from sims.grasping.job import Job
@@ -14,6 +15,7 @@ from sims.grasping.plan import TCP
 from sims.grasping.scene import GOAL
 from sims.log import Log
 from sims.metrics import Metric
+from wbc import Resolver
 from wbc.arrays import Array
 
 __all__ = ["OBJECT", "Result", "metrics", "misfit", "slip"]
@@ -25,6 +27,10 @@ LIFTED: Final = 0.095
 PLACED: Final = 3e-3
 UPRIGHT: Final = 0.02
 """Bounds of a success: [m], [m], [m], [rad]."""
+SHAKE: Final = 0.01
+"""Of joint velocities in the test of soundness [rad/s]."""
+SOUND: Final = 1e-9
+"""Relative change of higher levels by lower ones."""
 
 
 @final
@@ -48,13 +54,14 @@ class Result:
         return bool(self.job.grip is Grip.HOLDING and self.log.t[-1] >= rest)
 
 
-def metrics(results: list[Result]) -> list[Metric]:
-    """The cell's own metrics, over all cases."""
+def metrics(results: list[Result], resolver: Resolver) -> list[Metric]:
+    """The cell's own metrics, over all cases that the resolver ran."""
     judged = [_judge(result) for result in results]
     worst = {
         name: float(np.max([values[name] for values in judged])) for name in judged[0]
     }
     speed = max(float(np.abs(r.log.v / r.log.robot.v_max).max()) for r in results)
+    disturbed = max(_disturbed(result, resolver) for result in results)
     success = float(np.mean([_succeeded(values) for values in judged]))
     return [
         Metric("grasp_objects", len(results), 1, ">="),
@@ -66,6 +73,7 @@ def metrics(results: list[Result]) -> list[Metric]:
         Metric("grasp_place_error_max_m", worst["place"], PLACED),
         Metric("grasp_place_tilt_max_rad", worst["tilt"], UPRIGHT),
         Metric("grasp_joint_speed_max_fraction", speed, 1.0),
+        Metric("soundness_relative", disturbed, SOUND),
     ]
 
 
@@ -87,6 +95,19 @@ def _judge(result: Result) -> dict[str, float]:
         "place": float(np.linalg.norm(log.p[OBJECT][-1] - GOAL)),
         "tilt": float(np.arccos(upright)),
     }
+
+
+def _disturbed(result: Result, resolver: Resolver) -> float:
+    """By how much the posture disturbs the grasp; the rim leaves it one freedom."""
+    job, log = result.job, result.log
+    return soundness_along(
+        log,
+        log.robot,
+        job.rim.hierarchy,
+        resolver,
+        shake=SHAKE,
+        script=lambda t: job.rim.follow(job.timeline.at(t)),
+    )
 
 
 def _succeeded(values: dict[str, float]) -> bool:
