@@ -21,9 +21,9 @@ __all__ = ["Belief", "Turning", "believed_cranks", "handle"]
 SPREAD: Final = 5e-3
 """To which centre and radius are known [m]; the tilt of the axis is not known."""
 TURNS: Final = 1.1
-DURATION: Final = 12.0
+DURATION: Final = 10.0
 """Of the turning [s]."""
-REST: Final = 0.5
+REST: Final = 0.3
 """Before and after it [s]."""
 SUNK: Final = 0.016
 """Depth of the peg's end below the lever's upper face, at the start [m]."""

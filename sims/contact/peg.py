@@ -9,6 +9,7 @@ import numpy as np
 from sims.cell import Cell
 from sims.constraints.case import limits
 from sims.contact.scene import HOLE, TIP
+from sims.contact.spiral import Spiral
 from tasks import Damping, ForceLaw, FramePose, HybridForceMotion
 from wbc import Hierarchy, Solution
 from wbc.arrays import Array
@@ -81,7 +82,8 @@ class Search:
     duration = 12.0
 
     def __init__(self, hole: Array) -> None:
-        self._hole, self._angle, self._t = hole, 0.0, 0.0
+        self._hole, self._t = hole, 0.0
+        self._spiral = Spiral(PITCH, SPEED)
         self._task = HybridForceMotion(
             TIP,
             hole,
@@ -109,13 +111,14 @@ class Search:
         elif t < self._touched + SETTLE:
             self.surface = float(self._task.position[2])
         elif not self.sunk:
-            self._wind(dt)
+            offset, velocity = self._spiral.advance(dt)
+            self._task.set_target(self._hole + offset, None, velocity)
             self.sunk = bool(self._task.position[2] < self.surface - DROP)
 
     def watch(self, cell: Cell, solution: Solution) -> bool:
         """False once the peg began to sink, or the spiral has become too wide."""
         del cell, solution
-        return not self.sunk and self._angle * PITCH < 2.0 * np.pi * WIDEST
+        return not self.sunk and self._spiral.radius < WIDEST
 
     @property
     def report(self) -> str:
@@ -128,16 +131,6 @@ class Search:
             f"no hole within {WIDEST * 1e3:.0f} mm of where it was believed to be: the "
             "search has stopped on the surface. Look again for the hole's place."
         )
-
-    def _wind(self, dt: float) -> None:
-        """Further along r = pitch angle / 2 pi, at constant speed."""
-        growth = PITCH / (2.0 * np.pi)
-        turning = SPEED / (growth * np.hypot(1.0, self._angle))
-        self._angle += turning * dt
-        a, c, s = self._angle, np.cos(self._angle), np.sin(self._angle)
-        offset = growth * a * np.array([c, s, 0.0])
-        velocity = growth * turning * np.array([c - a * s, s + a * c, 0.0])
-        self._task.set_target(self._hole + offset, None, velocity)
 
 
 @final

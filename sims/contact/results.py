@@ -48,6 +48,12 @@ class Attempt:
         return float(np.linalg.norm(self.believed - HOLE))
 
     @property
+    def search_time(self) -> float:
+        """From the start to where the peg began to sink [s]."""
+        t = self.logs[0].t
+        return float(t[-1] - t[0])
+
+    @property
     def force(self) -> float:
         """Largest force between the peg and the block [N]."""
         return max(float(force_of(log).max()) for log in self.logs)
@@ -96,29 +102,43 @@ def force_of(log: Log) -> Array:
 
 
 def metrics(attempts: list[Attempt], cranks: list[Crank]) -> list[Metric]:
-    """The cell's own metrics."""
-    inserted = [a.logs[1] for a in attempts if len(a.logs) > 1]
-    pressed = max((float(force_of(log).max()) for log in inserted), default=np.nan)
-    time = max(a.logs[0].t[-1] for a in attempts)
-    turns = min(float(c.angle[-1]) / (2.0 * np.pi) for c in cranks)
-    radial = max(float(np.abs(c.forces[:, 0]).max()) for c in cranks)
-    learnt = max(
-        float(np.linalg.norm(c.turning.circle.centre - CRANK[:2])) for c in cranks
-    )
-    radius = max(abs(c.turning.circle.radius - LEVER) for c in cranks)
+    """The cell's own metrics: of either kind of job, if there was one."""
     logs = [log for a in attempts for log in a.logs] + [c.log for c in cranks]
     speed = max(float(np.abs(log.v / log.robot.v_max).max()) for log in logs)
-    success = float(np.mean([a.succeeded for a in attempts]))
+    return [
+        *(_of_pegs(attempts) if attempts else []),
+        *(_of_cranks(cranks) if cranks else []),
+        Metric("joint_speed_max_fraction", speed, 1.0),
+    ]
+
+
+def _of_pegs(attempts: list[Attempt]) -> list[Metric]:
+    inserted = [a.logs[1] for a in attempts if len(a.logs) > 1]
+    pressed = max((float(force_of(log).max()) for log in inserted), default=np.nan)
     return [
         Metric("peg_attempts", len(attempts), 1, ">="),
-        Metric("peg_success_fraction", success, 0.9, ">="),
+        Metric(
+            "peg_success_fraction",
+            float(np.mean([a.succeeded for a in attempts])),
+            0.9,
+            ">=",
+        ),
         Metric("peg_force_max_n", max(a.force for a in attempts), FORCE),
         Metric("peg_insertion_force_max_n", pressed, FORCE),
         Metric("peg_belief_error_max_m", max(a.error for a in attempts)),
-        Metric("peg_search_time_max_s", time),
+        Metric("peg_search_time_max_s", max(a.search_time for a in attempts)),
+    ]
+
+
+def _of_cranks(cranks: list[Crank]) -> list[Metric]:
+    circles = [crank.turning.circle for crank in cranks]
+    turns = min(float(c.angle[-1]) / (2.0 * np.pi) for c in cranks)
+    radial = max(float(np.abs(c.forces[:, 0]).max()) for c in cranks)
+    centre = max(float(np.linalg.norm(c.centre - CRANK[:2])) for c in circles)
+    radius = max(abs(c.radius - LEVER) for c in circles)
+    return [
         Metric("crank_turns", turns, 1.0, ">="),
         Metric("crank_radial_force_max_n", radial, RADIAL),
-        Metric("crank_centre_error_m", learnt),
+        Metric("crank_centre_error_m", centre),
         Metric("crank_radius_error_m", radius),
-        Metric("joint_speed_max_fraction", speed, 1.0),
     ]
