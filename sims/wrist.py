@@ -97,7 +97,9 @@ class WristSensor:
                 "between a body without joints and its parent."
             )
         self._dt = model.opt.timestep
-        self._mass, self._centre, self._inertia = _tool(model, body, self._id)
+        self._mass, self._first, self._second = _tool(model, body, self._id)
+        starts = [int(model.sensor(self._part(part)).adr[0]) for part in PARTS]
+        self._where = [slice(start, start + 3) for start in starts]
 
     def reset(self, data: mujoco.MjData) -> None:
         """Start bias, noise and filter again; the arm must be at rest and held."""
@@ -128,25 +130,14 @@ class WristSensor:
         The engine's acceleration of a frame is a - g already.
         """
         R = data.site_xmat[self._id].reshape(3, 3)
-        a, alpha = (
-            self._data(data, "linear acceleration"),
-            self._data(data, "angular acceleration"),
-        )
-        omega = self._data(data, "angular velocity")
-        c, I_W = R @ self._centre, R @ self._inertia @ R.T
-        at_centre = a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c))
-        force = self._mass * at_centre
-        spin = I_W @ alpha + np.cross(omega, I_W @ omega)
-        moment = np.cross(c, force) + spin
-        return np.concatenate(
-            [
-                R @ self._data(data, "force") - force,
-                R @ self._data(data, "torque") - moment,
-            ]
-        )
-
-    def _data(self, data: mujoco.MjData, part: str) -> Array:
-        return np.array(data.sensor(self._part(part)).data)
+        force, torque, a, alpha, omega = (data.sensordata[k] for k in self._where)
+        w, swing = _skew(omega @ R), _skew(alpha @ R)
+        B, a = swing + w @ w, a @ R  # a point at r accelerates by a + B r
+        needs = self._mass * a + B @ self._first
+        T = B @ self._second + np.outer(a, self._first)
+        turns = np.array([T[2, 1] - T[1, 2], T[0, 2] - T[2, 0], T[1, 0] - T[0, 1]])
+        wrench: Array = (np.array([force - needs, torque - turns]) @ R.T).ravel()
+        return wrench
 
     def _part(self, part: str) -> str:
         return f"{self.name} {part}"
@@ -159,24 +150,30 @@ def _both(force: float, torque: float, what: str) -> Array:
     return np.repeat([force, torque], 3)
 
 
-def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
-    """Mass, centre (3,) and inertia about it (3, 3) of a body and all it carries.
+def _skew(x: Array) -> Array:
+    """The matrix (3, 3) of x cross."""
+    a, b, c = x.tolist()
+    return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
 
-    In the axes of the site, at the posture of the compiled scene.
+
+def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
+    """Mass, first (3,) and second moments (3, 3) of a body and all it carries.
+
+    About the site and in its axes, at the posture of the compiled scene: the integrals
+    of 1, r and r r^T over the mass.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     p, R = data.site_xpos[site], data.site_xmat[site].reshape(3, 3)
+    first, second = np.zeros(3), np.zeros((3, 3))
     carried = [b for b in range(model.nbody) if _carries(model, body, b)]
-    m = model.body_mass[carried]
-    points = (data.xipos[carried] - p) @ R
-    centre = m @ points / max(float(m.sum()), 1e-12)
-    inertia = np.zeros((3, 3))
-    for b, mass, r in zip(carried, m, points - centre, strict=True):
+    for b in carried:
+        mass, r = model.body_mass[b], (data.xipos[b] - p) @ R
         turn = R.T @ data.ximat[b].reshape(3, 3)
-        inertia += turn @ np.diag(model.body_inertia[b]) @ turn.T
-        inertia += mass * (r @ r * np.eye(3) - np.outer(r, r))
-    return float(m.sum()), centre, inertia
+        inertia = turn @ np.diag(model.body_inertia[b]) @ turn.T
+        first += mass * r
+        second += 0.5 * np.trace(inertia) * np.eye(3) - inertia + mass * np.outer(r, r)
+    return float(model.body_mass[carried].sum()), first, second
 
 
 def _carries(model: mujoco.MjModel, body: int, other: int) -> bool:

@@ -2,9 +2,9 @@
 
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
-paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`,
-`Impedance`, `Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and
-limits (`JointLimits`, `JointLocking`, `TorqueLimits`).
+paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
+(`JointLimits`, `JointLocking`, `TorqueLimits`).
 """
 
 from tasks.along import PointOnCurve, TravelSpeed

@@ -9,6 +9,7 @@ import numpy as np
 from tasks.evaluator import SCRATCH, Code, evaluate, write_rows
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
+from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
@@ -90,7 +91,7 @@ def run_kernel(
         int(code),
         np.array(parameters),  # one memory layout, so that one compilation serves all
         np.array(table),
-        frame_at(np.zeros(frame_size(n)) if F is None else F, n),
+        python(frame_at)(np.zeros(frame_size(n)) if F is None else F, n),
         np.array(state.q),
         np.array(state.v),
         state.t,
@@ -103,6 +104,6 @@ def run_kernel(
 def _flat(F: FrameState, n: int) -> Array:
     """A frame as kernels lay it out."""
     flat = np.empty(frame_size(n))
-    for target, source in zip(frame_at(flat, n), F, strict=True):
+    for target, source in zip(python(frame_at)(flat, n), F, strict=True):
         target[:] = source
     return flat

@@ -18,6 +18,7 @@ from wbc import Hierarchy, Level, Robot, Rows, State, Task
 
 Kind = Literal["exact", "near zero", "velocity", "force", "bounds"]
 Rng = np.random.Generator
+FELT = np.array([3.0, -8.0, 11.0, 0.4, 0.2, -0.7])  # [N, Nm]
 
 
 def _still(t: float) -> None:
@@ -54,12 +55,12 @@ def tip(robot: Robot) -> str:
 def random_state(robot: Robot, rng: Rng, t: float = 0.0) -> State:
     """Inside the position limits (or a turn), at a good part of the speed limits.
 
-    A sensor "wrist" feels a random wrench.
+    A sensor "wrist" feels a wrench.
     """
     low, high = np.maximum(robot.q_min, -3.0), np.minimum(robot.q_max, 3.0)
     q = rng.uniform(low, high)
     v = rng.uniform(-0.5, 0.5, robot.nv) * robot.v_max
-    return robot.state(q, v, t, wrenches={"wrist": 10.0 * rng.normal(size=6)})
+    return robot.state(q, v, t, wrenches={"wrist": FELT})
 
 
 def random_rotation(rng: Rng, size: float = 2.0) -> np.ndarray:

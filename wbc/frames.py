@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled, inner
+from wbc.compiled import inner
 from wbc.pointers import address_of, floats_at
 
 __all__ = [
@@ -48,7 +48,7 @@ def frame_size(n: int) -> int:
     return 24 + 6 * n
 
 
-@compiled
+@inner
 def frame_at(flat: Array, n: int) -> FrameState:
     """The frame that lies in a flat array, as views."""
     return FrameState(

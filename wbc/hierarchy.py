@@ -82,7 +82,8 @@ class Hierarchy:
         levels: each a task, or a level of several.
 
     Raises:
-        InputError: no level, something that is no task, or one task named twice.
+        InputError: no level, something that is no task, one task named twice, or two
+            that answer the same measured force.
     """
 
     __slots__ = ("levels",)
@@ -100,6 +101,7 @@ class Hierarchy:
                     "once, under a name of its own (name=...)."
                 )
             seen[task.name] = task
+        _refuse_shared_claims(self.tasks())
 
     @classmethod
     def of(cls, item: Task | Level | Hierarchy) -> Hierarchy:
@@ -137,3 +139,17 @@ class Hierarchy:
 
     def __repr__(self) -> str:
         return " >> ".join(f"({level!r})" for level in self.levels)
+
+
+def _refuse_shared_claims(tasks: Iterator[Task]) -> None:
+    """A measured force goes into the torques once, or the robot would push twice."""
+    claimed: dict[str, str] = {}
+    for task in tasks:
+        for claim in task.claims:
+            if claim in claimed:
+                raise InputError(
+                    f"tasks '{claimed[claim]}' and '{task.name}' both answer the "
+                    f"{claim}: it would count twice. Give one of them another sensor, "
+                    "or join their rows in one task."
+                )
+            claimed[claim] = task.name

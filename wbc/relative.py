@@ -33,7 +33,8 @@ def moved(moving: Array, t: float, flat: Array) -> None:
         t: time [s].
         flat: (24,) or more; its first 24 numbers are written.
     """
-    flat[:POSE_AND_MOTION] = moving[:POSE_AND_MOTION]
+    for i in range(POSE_AND_MOTION):
+        flat[i] = moving[i]
     if moving[25] == 0.0:
         return
     late = t - moving[24]

@@ -34,7 +34,7 @@ class State:
         M: (n, n) joint-space inertia.
         h: (n,) Coriolis, centrifugal and gravity torques: M vdot + h = tau.
         wrenches: sensor name -> (6,) wrench of the robot ON the environment,
-            [force; moment], world axes [N, Nm].
+            [force; moment], world axes, at the sensor [N, Nm].
         data: Pinocchio's Data behind all this; do not write to it.
     """
 

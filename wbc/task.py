@@ -32,6 +32,8 @@ class Task(ABC):
     """
 
     space: Space = "acceleration"
+    claims: tuple[str, ...] = ()
+    """Measured forces that `advance` puts into the torques; no two tasks may share."""
     __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
