@@ -6,7 +6,7 @@ from abc import abstractmethod
 
 import numpy as np
 
-from tasks.evaluator import SCRATCH, Code, evaluate, write_rows
+from tasks.evaluator import SCRATCH, Code, evaluate, run
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
 from wbc.compiled import python
@@ -48,7 +48,7 @@ class CatalogueTask(MotionTask):
         m = len(self.row_names(robot))
         stiffness = self.law.stiffness if isinstance(self.law, PD) else np.zeros(())
         return Kernel(
-            write_rows,
+            run,
             int(self.code),
             self.live_parameters(robot),
             self.table(robot),

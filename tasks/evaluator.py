@@ -9,14 +9,16 @@ from tasks.kernels.joints import at_rest, at_target, joint_bounds, torque_bounds
 from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
 from tasks.kernels.points import on_point
 from tasks.kernels.rotations import along, orientation, pose
+from wbc import slots
 from wbc.arrays import Array, IntArray
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
-from wbc.pointers import floats_at
+from wbc.pointers import floats_at, integers_at
 from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
+from wbc.tick import conclude
 
-__all__ = ["SCRATCH", "Code", "evaluate", "write_rows"]
+__all__ = ["SCRATCH", "Code", "evaluate", "run"]
 
 
 class Code(IntEnum):
@@ -91,13 +93,41 @@ def evaluate(
 
 
 @compiled
-def write_rows(
+def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) -> int:
+    """Update the frames, write the rows of all tasks, and conclude the tick.
+
+    It is the runner of this catalogue's kernels; `wbc.tick` tells its arguments and
+    what it returns.
+    """
+    n, m = table[slots.JOINTS], table[slots.ROWS]
+    f, tasks, spare = table[slots.FRAMES], table[slots.TASKS], SCRATCH + 6 * n
+    pointers = integers_at(table[slots.POINTERS], f * 6).reshape((f, 6))
+    constants = floats_at(table[slots.CONSTANTS], f * (15 + n)).reshape((f, 15 + n))
+    blocks = floats_at(table[slots.BLOCKS], f * (24 + 6 * n)).reshape((f, 24 + 6 * n))
+    scratch = floats_at(table[slots.SCRATCH], 4 * spare).reshape((4, spare))
+    jacobian = table[slots.JACOBIAN]
+    for i in range(f):
+        update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch[1], n)
+    _write_rows(
+        integers_at(table[slots.PROGRAM], tasks * 10).reshape((tasks, 10)),
+        floats_at(table[slots.GAINS], 2 * m).reshape((2, m)),
+        blocks,
+        scratch,
+        q,
+        v,
+        t,
+        dt,
+        floats_at(table[slots.RAW], m * n).reshape((m, n)),
+        floats_at(table[slots.BANDS], 5 * m).reshape((5, m)),
+    )
+    return conclude(table, out)
+
+
+@inner
+def _write_rows(
     program: IntArray,
     gains: Array,
-    pointers: IntArray,
-    constants: Array,
     blocks: Array,
-    jacobian: int,
     scratch: Array,
     q: Array,
     v: Array,
@@ -106,7 +136,7 @@ def write_rows(
     A: Array,
     bands: Array,
 ) -> None:
-    """Update the frames, then the rows of all tasks; an evaluator of `wbc.kernel`.
+    """The rows of all tasks, and the accelerations that their laws want of them.
 
     Args:
         program: (k, 10) for each task: code, frame, first row, end, address and size of
@@ -114,10 +144,7 @@ def write_rows(
             address of a frame that moves by itself (0 for none; it takes the place of
             the frame that is -2).
         gains: (2, m) stiffness and damping of every row; negative for bounds.
-        pointers: of `wbc.frames.Frames`.
-        constants: of the same.
-        blocks: of the same; written.
-        jacobian: of the same.
+        blocks: the frames, flat.
         scratch: (4, 96 + 6 n) numbers on the way; the last row starts as zeros.
         q: (n,) positions.
         v: (n,) velocities.
@@ -127,8 +154,6 @@ def write_rows(
         bands: (5, m) error, rate, drift, lower, upper are written.
     """
     n = q.size
-    for f in range(pointers.shape[0]):
-        update_frame(blocks[f], pointers[f], constants[f], jacobian, scratch[1], n)
     for k in range(program.shape[0]):
         code, begin, end = program[k, 0], program[k, 2], program[k, 3]
         out = Rows(

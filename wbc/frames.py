@@ -66,8 +66,8 @@ class Frames:
 
     Args:
         model: the Pinocchio model.
-        data: its Data; `crba`, `nonLinearEffects` and `computeJointJacobians` must
-            have run on it before the frames are updated.
+        data: its Data; `crba` in the world's axes and `nonLinearEffects` must have
+            run on it before the frames are updated.
         names: one a frame.
         indices: Pinocchio's index of each.
 

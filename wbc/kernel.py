@@ -23,8 +23,8 @@ class Kernel:
     """How to compute a task's rows without Python.
 
     Attributes:
-        evaluator: compiled function that runs the kernels of a whole catalogue; its
-            arguments are those of `tasks.evaluator.write_rows`.
+        runner: compiled function that writes the rows of all tasks of a catalogue and
+            then calls `wbc.tick.conclude`; arguments as `wbc.tick.without_kernels`.
         code: which kernel of that catalogue.
         parameters: numbers that the kernel reads at every tick; the task may change
             them in place, as a moving target does.
@@ -34,7 +34,7 @@ class Kernel:
             the place of the world among the task's two frames.
     """
 
-    evaluator: Callable[..., Any]
+    runner: Callable[..., Any]
     code: int
     parameters: Array
     table: Array = field(default_factory=lambda: NO_TABLE)

@@ -17,7 +17,7 @@ world, by a frame of the robot, or by a `MovingFrame`.
 | `LineInPlane` | 1 m, 1 rad | 2 |
 | `ParallelPlanes` | 2 rad | 2 |
 | `PlaneOnPlane` | 1 m, 2 rad | 3 |
-| `rim_grasp`, five of these | 3 m, 4 rad | 5 where they hold |
+| `rim_grasp`, five of these | 3 m, 4 rad | 5 |
 """
 
 from tasks.geometry.constraint import Constraint

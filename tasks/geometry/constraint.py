@@ -17,7 +17,15 @@ from wbc.arrays import Array, frozen
 from wbc.errors import InputError, UnknownName
 from wbc.kernel import WORLD
 
-__all__ = ["Constraint", "Sense", "angle_between", "as_point", "parallel", "relation"]
+__all__ = [
+    "Constraint",
+    "Sense",
+    "angle_between",
+    "as_point",
+    "expect",
+    "parallel",
+    "relation",
+]
 
 Sense: TypeAlias = Literal["same", "opposite", "nearest"]
 """Of two parallel directions; "nearest" takes at each tick what is less than a right
@@ -148,6 +156,20 @@ def as_point(point: str | Point | ArrayLike, what: str = "the point") -> Point:
     if isinstance(point, str):
         return Point(on=point)
     return Point(frozen(point, (3,), what))
+
+
+def expect(kind: type, *features: object) -> None:
+    """See that features are of a kind.
+
+    Raises:
+        InputError: one is not.
+    """
+    for feature in features:
+        if not isinstance(feature, kind):
+            raise InputError(
+                f"this constraint needs a {kind.__name__}, not "
+                f"{type(feature).__name__}: {feature!r}."
+            )
 
 
 def _triad(a: Array) -> Array:

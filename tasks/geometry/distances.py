@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import Constraint, as_point, relation
+from tasks.geometry.constraint import Constraint, as_point, expect, relation
 from tasks.geometry.features import Line, Plane, Point
 from tasks.geometry.points import carrier_name
 from wbc.arrays import frozen, positive
@@ -89,6 +89,7 @@ class DistanceToLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, line)
         a = as_point(point)
         name = name or f"{carrier_name(a.on)} distance to line"
         p = relation(
@@ -128,6 +129,7 @@ class DistanceToPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Plane, plane)
         a, n = as_point(point), plane.normal
         name = name or f"{carrier_name(a.on)} distance to plane"
         away = float(frozen(distance, (), f"distance of '{name}'"))

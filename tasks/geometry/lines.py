@@ -11,6 +11,7 @@ from tasks.geometry.constraint import (
     Constraint,
     Sense,
     angle_between,
+    expect,
     parallel,
     relation,
 )
@@ -59,6 +60,7 @@ class LineOnLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, first, second)
         name = name or f"{carrier_name(first.on)} line on line"
         p = relation(
             point=first.point,
@@ -101,6 +103,7 @@ class ParallelLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, first, second)
         name = name or f"{carrier_name(first.on)} parallel"
         p = relation(direction=parallel(first.direction, second.direction, sense))
         super().__init__(first.on, second.on, p, name, stiffness, damping)
@@ -132,6 +135,7 @@ class PerpendicularLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, first, second)
         name = name or f"{carrier_name(first.on)} perpendicular"
         turn = angle_between(first.direction, second.direction, 0.5 * np.pi)
         p = relation(direction=turn)
@@ -169,6 +173,7 @@ class AngleBetweenLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, first, second)
         name = name or f"{carrier_name(first.on)} angle"
         wanted = float(frozen(angle, (), f"angle of '{name}'"))
         if not 0.0 < wanted < np.pi:
@@ -207,6 +212,8 @@ class LineInPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, line)
+        expect(Plane, plane)
         name = name or f"{carrier_name(line.on)} line in plane"
         p = relation(
             point=line.point,

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import Constraint, as_point, relation
+from tasks.geometry.constraint import Constraint, as_point, expect, relation
 from tasks.geometry.features import (
     Carrier,
     Circle,
@@ -90,6 +90,7 @@ class PointOnLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Line, line)
         a = as_point(point)
         name = name or f"{carrier_name(a.on)} on line"
         p = relation(point=a.position, origin=line.point, along=tuple(line.normals))
@@ -122,6 +123,7 @@ class PointOnPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Plane, plane)
         a = as_point(point)
         name = name or f"{carrier_name(a.on)} on plane"
         p = relation(point=a.position, origin=plane.point, along=(plane.normal,))
@@ -157,6 +159,7 @@ class PointOnCircle(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Circle, circle)
         a, n = as_point(point), circle.normal
         name = name or f"{carrier_name(a.on)} on circle"
         p = relation(
@@ -197,6 +200,7 @@ class PointOnCylinder(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        expect(Cylinder, cylinder)
         a = as_point(point)
         name = name or f"{carrier_name(a.on)} on cylinder"
         p = relation(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.geometry.constraint import expect
 from tasks.geometry.distances import DistanceToLine, DistanceToPlane
 from tasks.geometry.features import Cylinder, Line, Plane
 from tasks.geometry.lines import LineInPlane, ParallelLines, PerpendicularLines
@@ -29,14 +30,15 @@ def rim_grasp(
     damping: ArrayLike | None = None,
     name: str = "rim",
 ) -> Level:
-    """The tasks of a grasp at the rim of a cylinder: 7 rows, rank 5 once they hold.
+    """The tasks of a grasp at the rim of a cylinder: 7 rows, rank 5.
 
     What stays free is the place along the rim; the fingers may also stand on either
     side, and which side is the nearer decides. The rows are, with B the gripper and A
     the cylinder: A's axis in the plane of B's two axes (2 rows), B's origin at the
     radius from A's axis (1) and on the top plane (1), the approach against A's
-    direction (2), and the closing direction across A's axis (1). Approach implies the
-    last row and one of the first two.
+    direction (2), and the closing direction across A's axis (1). All four rows of
+    angles turn across A's axis, in which there are two directions: two rows are
+    redundant at every pose, exactly, so that no solver takes them for a sixth.
 
     Args:
         frame: name of the gripper's frame, origin between the finger tips.
@@ -53,6 +55,7 @@ def rim_grasp(
     Raises:
         InputError: axes that are not at a right angle, an unusable number or gain.
     """
+    expect(Cylinder, cylinder)
     b1, b2 = unit(approach, "approach"), unit(closing, "closing")
     if abs(b1 @ b2) > 1e-6:
         raise InputError("approach and closing of a gripper must be at a right angle.")
@@ -73,8 +76,8 @@ def rim_grasp(
             frame, top, -depth, stiffness=stiffness, damping=damping, name=f"{name} top"
         )
         + ParallelLines(
+            axis,  # its rows turn across A's axis, as the other angles do: see above
             first,
-            axis,
             sense="opposite",
             stiffness=stiffness,
             damping=damping,

@@ -24,6 +24,9 @@ __all__ = ["constraint"]
 
 SINGULAR = 1e-9
 """Below this distance [m], or sine, any direction serves as well as another."""
+CLOSE = 0.01
+"""Share of the wanted distance, or sine, below which the curvature no longer grows: on
+the axis it is infinite, and who passes there must not be thrown about."""
 
 
 @inner
@@ -39,63 +42,77 @@ def constraint(p: Array, S: FrameState, v: Array, scratch: Array, out: Rows) -> 
         p: the parameters.
         S: F seen from G.
         v: (n,) joint velocities.
-        scratch: (33,) or more.
+        scratch: (30,) or more.
         out: the rows.
     """
     along, apart = int(p[0]), int(p[1])
-    row = 0
+    row, motion = 0, scratch[:12]
     if along + apart > 0:
-        _motion_of_point(p, S, scratch)
+        _motion_of_point(p, S.p, S.R, S.V, S.drift, motion)
         for i in range(along):
-            _along(p[12 + 3 * i : 15 + 3 * i], S, scratch, out, row)
+            _along(p[12 + 3 * i : 15 + 3 * i], motion, S.J, out, row)
             row += 1
     if apart > 0:
-        _apart(p, along, apart, S, scratch, out, row)
+        _apart(p, along, apart, motion, S.J, scratch[12:15], out, row)
         row += 1
     if p[2] == 1.0:
-        _parallel(p, S, scratch[18:33], out, row)
+        _parallel(p, S, scratch[15:30], out, row)
     elif p[2] == 2.0:
-        _angle(p, S, scratch[18:33], out, row)
-    J = out.A
+        _angle(p, S, scratch[15:30], out, row)
+    if p[33] == 0.0:
+        out.rate[:] = 0.0
+    else:
+        _subtract(out.A, v, out.rate)
+
+
+@inner
+def _subtract(J: Array, v: Array, rate: Array) -> None:
+    """Leave of the whole rate what changes by time alone."""
     for i in range(J.shape[0]):
-        if p[33] == 0.0:
-            out.rate[i] = 0.0
-        for j in range(J.shape[1] if p[33] != 0.0 else 0):
-            out.rate[i] -= J[i, j] * v[j]  # what changes by time alone
+        for j in range(J.shape[1]):
+            rate[i] -= J[i, j] * v[j]
 
 
 @inner
-def _motion_of_point(p: Array, S: FrameState, scratch: Array) -> None:
-    """Of the first feature's point: arm from F, x, velocity, acceleration drift."""
-    r, x, velocity, drift = scratch[0:3], scratch[3:6], scratch[6:9], scratch[9:12]
-    spin, lift = scratch[12:15], scratch[15:18]
-    for i in range(3):
-        r[i] = S.R[i, 0] * p[6] + S.R[i, 1] * p[7] + S.R[i, 2] * p[8]
-    cross_into(S.V[3:6], r, spin)
-    cross_into(S.drift[3:6], r, lift)
-    for i in range(3):
-        x[i] = S.p[i] + r[i] - p[9 + i]
-        velocity[i] = S.V[i] + spin[i]
-        drift[i] = S.drift[i] + lift[i]
-    cross_into(S.V[3:6], spin, lift)
-    for i in range(3):
-        drift[i] += lift[i]
+def _motion_of_point(
+    p: Array, origin: Array, R: Array, V: Array, drift: Array, motion: Array
+) -> None:
+    """Of the first feature's point: arm r from F, x, velocity, acceleration drift.
+
+    x = origin + r - b, xd = v + omega x r, xdd = a + alpha x r + omega x (omega x r).
+    """
+    w0, w1, w2 = V[3], V[4], V[5]
+    r0 = R[0, 0] * p[6] + R[0, 1] * p[7] + R[0, 2] * p[8]
+    r1 = R[1, 0] * p[6] + R[1, 1] * p[7] + R[1, 2] * p[8]
+    r2 = R[2, 0] * p[6] + R[2, 1] * p[7] + R[2, 2] * p[8]
+    s0, s1, s2 = w1 * r2 - w2 * r1, w2 * r0 - w0 * r2, w0 * r1 - w1 * r0
+    motion[0], motion[1], motion[2] = r0, r1, r2
+    motion[3] = origin[0] + r0 - p[9]
+    motion[4] = origin[1] + r1 - p[10]
+    motion[5] = origin[2] + r2 - p[11]
+    motion[6], motion[7], motion[8] = V[0] + s0, V[1] + s1, V[2] + s2
+    d3, d4, d5 = drift[3], drift[4], drift[5]
+    motion[9] = drift[0] + d4 * r2 - d5 * r1 + w1 * s2 - w2 * s1
+    motion[10] = drift[1] + d5 * r0 - d3 * r2 + w2 * s0 - w0 * s2
+    motion[11] = drift[2] + d3 * r1 - d4 * r0 + w0 * s1 - w1 * s0
 
 
 @inner
-def _along(n: Array, S: FrameState, scratch: Array, out: Rows, row: int) -> None:
+def _along(n: Array, motion: Array, J_S: Array, out: Rows, row: int) -> None:
     """N . x; its whole rate goes to out.rate."""
-    r, x, velocity, drift = scratch[0:3], scratch[3:6], scratch[6:9], scratch[9:12]
-    out.error[row] = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
-    out.rate[row] = n[0] * velocity[0] + n[1] * velocity[1] + n[2] * velocity[2]
-    out.drift[row] = n[0] * drift[0] + n[1] * drift[1] + n[2] * drift[2]
-    m0 = r[1] * n[2] - r[2] * n[1]  # n . (omega x r) = omega . (r x n)
-    m1 = r[2] * n[0] - r[0] * n[2]
-    m2 = r[0] * n[1] - r[1] * n[0]
-    J, J_S = out.A, S.J
-    for j in range(J.shape[1]):
-        linear = n[0] * J_S[0, j] + n[1] * J_S[1, j] + n[2] * J_S[2, j]
-        J[row, j] = linear + m0 * J_S[3, j] + m1 * J_S[4, j] + m2 * J_S[5, j]
+    n0, n1, n2 = n[0], n[1], n[2]
+    r0, r1, r2 = motion[0], motion[1], motion[2]
+    out.error[row] = n0 * motion[3] + n1 * motion[4] + n2 * motion[5]
+    out.rate[row] = n0 * motion[6] + n1 * motion[7] + n2 * motion[8]
+    out.drift[row] = n0 * motion[9] + n1 * motion[10] + n2 * motion[11]
+    J = out.A[row]
+    for j in range(J.size):
+        J[j] = n0 * J_S[0, j] + n1 * J_S[1, j] + n2 * J_S[2, j]
+    if r0 == 0.0 and r1 == 0.0 and r2 == 0.0:
+        return
+    m0, m1, m2 = r1 * n2 - r2 * n1, r2 * n0 - r0 * n2, r0 * n1 - r1 * n0
+    for j in range(J.size):  # n . (omega x r) = omega . (r x n)
+        J[j] += m0 * J_S[3, j] + m1 * J_S[4, j] + m2 * J_S[5, j]
 
 
 @inner
@@ -103,8 +120,9 @@ def _apart(
     p: Array,
     first: int,
     count: int,
-    S: FrameState,
-    scratch: Array,
+    motion: Array,
+    J_S: Array,
+    u: Array,
     out: Rows,
     row: int,
 ) -> None:
@@ -113,26 +131,24 @@ def _apart(
     The drift is u . xdd + (|xd|^2 - (u . xd)^2) / length, within that space. On the
     axis itself the length has no slope, and the first vector serves as u.
     """
-    x, velocity, u = scratch[3:6], scratch[6:9], scratch[12:15]
     length, speed = 0.0, 0.0
-    for k in range(3):
-        u[k] = 0.0
-    for i in range(first, first + count):
-        n = p[12 + 3 * i : 15 + 3 * i]
-        across = n[0] * x[0] + n[1] * x[1] + n[2] * x[2]
-        rate = n[0] * velocity[0] + n[1] * velocity[1] + n[2] * velocity[2]
+    u[0] = u[1] = u[2] = 0.0
+    for k in range(12 + 3 * first, 12 + 3 * (first + count), 3):
+        n0, n1, n2 = p[k], p[k + 1], p[k + 2]
+        across = n0 * motion[3] + n1 * motion[4] + n2 * motion[5]
+        rate = n0 * motion[6] + n1 * motion[7] + n2 * motion[8]
         length += across * across
         speed += rate * rate
-        for k in range(3):
-            u[k] += across * n[k]
+        u[0] += across * n0
+        u[1] += across * n1
+        u[2] += across * n2
     length = np.sqrt(length)
     for k in range(3):
         u[k] = u[k] / length if length > SINGULAR else p[12 + 3 * first + k]
-    _along(u, S, scratch, out, row)
+    _along(u, motion, J_S, out, row)
     out.error[row] = length - p[4]
-    if length > SINGULAR:
-        rate = out.rate[row]
-        out.drift[row] += max(speed - rate * rate, 0.0) / length
+    rate, least = out.rate[row], max(length, CLOSE * p[4])
+    out.drift[row] += max(speed - rate * rate, 0.0) * length / (least * least)
 
 
 @inner
@@ -146,7 +162,8 @@ def _parallel(p: Array, S: FrameState, scratch: Array, out: Rows, row: int) -> N
         n[i] = sense * p[30 + i]
     turn_to(B, n, scratch[12:15], out, row)
     for i in range(2):
-        _turning(B[3 + 3 * i : 6 + 3 * i], S, out, row + i)
+        u = B[3 + 3 * i : 6 + 3 * i]
+        _turning(u, S.V, S.drift, S.J, out, row + i)
 
 
 @inner
@@ -162,24 +179,27 @@ def _angle(p: Array, S: FrameState, scratch: Array, out: Rows, row: int) -> None
     sine = np.sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
     cosine = n[0] * B[0] + n[1] * B[1] + n[2] * B[2]
     if sine <= SINGULAR:
-        _turning(B[3:6], S, out, row)
+        _turning(B[3:6], S.V, S.drift, S.J, out, row)
     else:
         cross_into(S.V[3:6], B[:3], change)
         cross_into(n, change, B[3:6])
         for i in range(3):
             c[i] /= sine
-        _turning(c, S, out, row)
+        _turning(c, S.V, S.drift, S.J, out, row)
         inward = c[0] * B[3] + c[1] * B[4] + c[2] * B[5]
+        least = max(sine, CLOSE * np.sin(p[5]))
         for i in range(3):
-            out.drift[row] += (B[3 + i] - inward * c[i]) / sine * S.V[3 + i]
+            turned = (B[3 + i] - inward * c[i]) * sine / (least * least)
+            out.drift[row] += turned * S.V[3 + i]
     out.error[row] = np.arctan2(sine, cosine) - p[5]
 
 
 @inner
-def _turning(u: Array, S: FrameState, out: Rows, row: int) -> None:
+def _turning(u: Array, V: Array, drift: Array, J_S: Array, out: Rows, row: int) -> None:
     """Rate, drift and Jacobian of a row that turns about u; not the error."""
-    out.rate[row] = u[0] * S.V[3] + u[1] * S.V[4] + u[2] * S.V[5]
-    out.drift[row] = u[0] * S.drift[3] + u[1] * S.drift[4] + u[2] * S.drift[5]
-    J, J_S = out.A, S.J
-    for j in range(J.shape[1]):
-        J[row, j] = u[0] * J_S[3, j] + u[1] * J_S[4, j] + u[2] * J_S[5, j]
+    u0, u1, u2 = u[0], u[1], u[2]
+    out.rate[row] = u0 * V[3] + u1 * V[4] + u2 * V[5]
+    out.drift[row] = u0 * drift[3] + u1 * drift[4] + u2 * drift[5]
+    J = out.A[row]
+    for j in range(J.size):
+        J[j] = u0 * J_S[3, j] + u1 * J_S[4, j] + u2 * J_S[5, j]

@@ -12,13 +12,18 @@ from tests.arms import HOME, LOWER, UPPER, seven_axis, six_axis, two_arms, two_l
 from tests.catalogue import random_rotation
 from tests.tolerances import BRUTE_FORCE, POSE
 from wbc import (
+    PD,
+    HierarchicalQP,
     Hierarchy,
     InputError,
+    MotionTask,
+    NullSpace,
     Robot,
     SolverError,
     State,
     UnknownName,
     allocate_rows,
+    resolve,
 )
 from wbc import solve_pose as solve
 
@@ -245,6 +250,34 @@ def test_the_rim_grasp_has_seven_rows_rank_five_and_one_degree_left(seed):
     assert level.conflicts == ()
 
 
+@pytest.mark.parametrize(
+    "resolver", [HierarchicalQP(), NullSpace()], ids=lambda r: r.name
+)
+def test_the_rim_is_approached_without_chatter_and_leaves_the_posture_its_freedom(
+    resolver,
+):
+    """Redundant rows that were so only at the grasp asked for 200 rad/s^2 near it."""
+    robot, dt = six_axis(), 2e-3
+    rim = tasks.rim_grasp("torch_tip", tasks.Cylinder([0.8, 0.1, 0.4], Z, 0.04))
+    grasp = solve(robot, rim, quick=True).q
+    q = grasp + 1e-4 * np.random.default_rng(1).normal(size=6)
+    v, largest = np.zeros(6), 0.0
+    turned = tasks.Posture(grasp + 0.3 * np.eye(6)[0])
+    for _ in range(500):
+        a = resolve(robot.state(q, v), rim >> turned, resolver).acceleration
+        largest = max(largest, float(np.abs(a).max()))
+        v = v + dt * a
+        q = q + dt * v
+    state = robot.state(q)
+    assert largest < 3.0
+    assert np.linalg.norm(v) < 0.01
+    assert np.linalg.norm(q - grasp) > 0.02  # along the rim, towards the posture
+    for task, _ in rim.terms:
+        rows = allocate_rows(len(task.row_names(robot)), 6)
+        task.update(state, rows)
+        assert np.abs(rows.error).max() < 1e-6
+
+
 def test_two_arms_meet():
     robot = two_arms()
     start = np.concatenate([HOME, HOME])
@@ -303,11 +336,13 @@ def test_a_start_outside_the_limits_leads_inside():
     assert 0.2 <= result.q[1] <= 1.0
 
 
-class Broken(tasks.geometry.Constraint):
-    ROWS = (("x", "m"),)
+class Broken(MotionTask):
+    def __init__(self, error: float) -> None:
+        super().__init__("broken", "m", ("x",), PD(1.0))
+        self.error = error
 
     def evaluate(self, state: State, out) -> None:
-        out.error[:] = np.nan
+        out.error[:] = self.error
 
 
 def test_bad_input_is_refused_by_name():
@@ -324,6 +359,6 @@ def test_bad_input_is_refused_by_name():
         solve(arm, goal, attempts=0)
     with pytest.raises(UnknownName, match="unknown frame 'tipp'"):
         solve(arm, tasks.PointOnPoint("tipp", X))
-    broken = Broken("tip", None, np.zeros(34), "broken", 1.0, None)
-    with pytest.raises(SolverError, match="'broken' wrote a row that is not finite"):
-        solve(arm, broken)
+    for error in (np.nan, np.inf):
+        with pytest.raises(SolverError, match="'broken' wrote a row 'x' that is not"):
+            solve(arm, goal >> Broken(error))

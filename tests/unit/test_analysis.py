@@ -55,7 +55,7 @@ def test_the_rim_leaves_two_of_seven_and_names_its_redundant_rows(metric):
     assert middle.singular_values.shape == (7,)
     assert (middle.singular_values[5:] < 1e-9).all()
     assert [(row.task, row.row) for row in middle.redundant] == [
-        ("rim approach", "tilt 1"),
+        ("rim approach", "tilt 2"),
         ("rim closing", "angle"),
     ]
     assert not any(row.above for row in middle.redundant)
@@ -138,11 +138,24 @@ def test_torque_rows_are_counted_over_accelerations():
 
 
 def test_a_larger_tolerance_forgives_a_pose_that_nearly_holds():
-    state = home()
-    near = seven_axis().state(HOME + 1e-6)
-    grasp = Hierarchy(rim(state))
-    assert grasp.analyse(near).levels[0].rank > 5
-    assert grasp.analyse(near, tolerance=1e-4).levels[0].rank == 5
+    """Parallel implies perpendicular, but only where it holds."""
+    axis = tasks.Line(X, home().frame(TIP).R[:, 2])
+    tool, across = tasks.Line(0 * X, Z, on=TIP), tasks.Line(0 * X, Y, on=TIP)
+    both = tasks.ParallelLines(tool, axis) + tasks.PerpendicularLines(across, axis)
+    assert Hierarchy(both).analyse(home()).levels[0].rank == 2
+    near = seven_axis().state(HOME + 1e-5 * np.arange(7))
+    assert Hierarchy(both).analyse(near).levels[0].rank == 3
+    assert Hierarchy(both).analyse(near, tolerance=1e-3).levels[0].rank == 2
+
+
+@pytest.mark.parametrize("away", [0.0, 1e-9, 1e-6, 1e-3, 1.0])
+def test_the_rim_has_rank_five_wherever_the_gripper_is(away):
+    rng = np.random.default_rng(23)
+    for _ in range(5):
+        state = seven_axis().state(HOME + away * rng.normal(size=7))
+        (level,) = Hierarchy(rim(home())).analyse(state).levels
+        assert (level.rows, level.rank, level.free) == (7, 5, 2)
+        assert (level.singular_values[5:] < 1e-13).all()
 
 
 def test_the_text_says_it_all():

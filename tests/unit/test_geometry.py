@@ -191,6 +191,26 @@ def test_a_conveyor_goes_on_and_a_turntable_turns():
     assert np.linalg.norm(found) == pytest.approx(np.linalg.norm(error))
 
 
+@pytest.mark.parametrize("away", [0.0, 1e-12, 1e-8, 1e-5, 1e-3])
+def test_passing_an_axis_asks_for_no_more_than_a_share_of_the_radius_does(away):
+    """v^2 / length would be 1e12 m/s^2 at the worst of these."""
+    state = home(np.linspace(-1.0, 1.0, 7))
+    F = state.frame(TIP)
+    speed = float(np.linalg.norm(F.V[:3]))
+    for task in (
+        tasks.PointOnCircle(TIP, tasks.Circle(F.p + away * X, Z, 0.1)),
+        tasks.DistanceToPoint(TIP, F.p + away * X, 0.1),
+        tasks.DistanceToLine(TIP, tasks.Line(F.p + away * X, Z), 0.1),
+    ):
+        drift = rows_of(task, state).drift[-1]
+        assert abs(drift) < np.linalg.norm(F.drift[:3]) + speed**2 / (0.01 * 0.1)
+    n = F.R @ (np.cos(away) * Z + np.sin(away) * X)
+    tool = tasks.Line(np.zeros(3), Z, on=TIP)
+    drift = rows_of(tasks.PerpendicularLines(tool, tasks.Line(X, n)), state).drift
+    spin = float(np.linalg.norm(F.V[3:]))
+    assert abs(drift[0]) < np.linalg.norm(F.drift[3:]) + spin**2 / 0.01
+
+
 # ------------------------------------------------------------------------- the rim
 
 
@@ -271,6 +291,35 @@ def test_a_gripper_with_skew_axes_is_refused():
 def test_a_degenerate_feature_is_refused_by_its_name(make, offender):
     with pytest.raises(InputError, match=offender):
         make()
+
+
+def test_a_feature_of_another_kind_is_refused_by_what_is_needed():
+    line, plane = tasks.Line(X, Z), tasks.Plane(X, Z)
+    for make, kind in (
+        (lambda: tasks.PointOnLine(TIP, plane), "a Line, not Plane"),
+        (lambda: tasks.PointOnPlane(TIP, line), "a Plane, not Line"),
+        (lambda: tasks.PointOnCircle(TIP, plane), "a Circle, not Plane"),
+        (lambda: tasks.PointOnCylinder(TIP, line), "a Cylinder, not Line"),
+        (lambda: tasks.DistanceToLine(TIP, [1, 0, 0], 0.1), "a Line, not list"),
+        (lambda: tasks.LineInPlane(plane, plane), "a Line, not Plane"),
+        (lambda: tasks.ParallelLines(line, TIP), "a Line, not str"),
+        (lambda: tasks.PlaneOnPlane(plane, line), "a Plane, not Line"),
+        (lambda: tasks.rim_grasp(TIP, line), "a Cylinder, not Line"),
+    ):
+        with pytest.raises(InputError, match=kind):
+            make()
+    with pytest.raises(InputError, match="point of 'tip on point' is not an array"):
+        tasks.PointOnPoint(TIP, plane)
+
+
+def test_a_cylinder_has_an_axis_and_a_rim_and_a_circle_a_plane():
+    cylinder = tasks.Cylinder(X, 2.0 * Z, 0.1, on=TIP)
+    assert_allclose(cylinder.axis.direction, Z)
+    assert cylinder.rim.radius == 0.1
+    circle = cylinder.rim
+    assert_allclose(circle.plane.normal, Z)
+    assert_allclose(circle.axis.point, X)
+    assert {cylinder.axis.on, circle.on, circle.plane.on, circle.axis.on} == {TIP}
 
 
 def test_a_relation_that_no_joint_can_change_is_refused():

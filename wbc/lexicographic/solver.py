@@ -14,17 +14,24 @@ from wbc.lexicographic.dual import climb
 from wbc.lexicographic.multipliers import ROUND_OFF, fault
 from wbc.lexicographic.sweep import sweep, take_point
 from wbc.lexicographic.vectors import copy, dot, length
-from wbc.lexicographic.work import Dual, Memory, Work, unpack, unpack_dual
+from wbc.lexicographic.work import (
+    MOST,
+    SOLVED,
+    TOLERANCE,
+    Dual,
+    Memory,
+    Work,
+    unpack,
+    unpack_dual,
+)
 from wbc.linalg import RANK_TOLERANCE
 
-__all__ = ["Lexicographic"]
+__all__ = ["Lexicographic", "lexicographic"]
 
 GUESSES = 4
 """Sweeps that a remembered working set gets before one is made from nothing."""
 CORRECTIONS = 30
 """Sweeps that one made from nothing gets."""
-SOLVED = 3
-"""Where the integers tell whether the working set is that of a solution."""
 
 
 @final
@@ -51,6 +58,7 @@ class Lexicographic:
         slack: (m,) bound - a x of the rows of its working set, 0 for the others.
         side: (m,) its working set: 1 at upper, -1 at lower, 2 equality, 0 free.
         sweeps: how many sweeps and steps it took.
+        floats, integers: its memory, for compiled code.
     """
 
     def __init__(
@@ -61,14 +69,14 @@ class Lexicographic:
         most: int | None = None,
     ) -> None:
         memory = Memory(sizes, n)
-        self._floats, self._integers = memory.floats, memory.integers
+        self.floats, self.integers = memory.floats, memory.integers
         self._work = memory.views
-        self._tolerance = tolerance
-        self._most = 50 + 20 * (int(sum(sizes)) + n) if most is None else most
+        self.floats[TOLERANCE] = tolerance
+        self.integers[MOST] = 50 + 20 * (int(sum(sizes)) + n) if most is None else most
         self.x, self.side = self._work.x, self._work.side
         self.slack = self._work.slack
         self.sweeps = 0
-        announce(_solve, "the solver")
+        announce(lexicographic, "the solver")
 
     @property
     def ranks(self) -> IntArray:
@@ -78,7 +86,7 @@ class Lexicographic:
 
     def reset(self) -> None:
         """Forget the working set."""
-        self._integers[SOLVED] = 0
+        self.integers[SOLVED] = 0
 
     def solve(self, A: Array, lower: Array, upper: Array) -> bool:
         """Solve; whether an optimal working set was found within the iterations.
@@ -91,24 +99,19 @@ class Lexicographic:
             lower: (m,) -inf where there is no bound.
             upper: (m,) +inf where there is no bound; not below `lower`.
         """
-        self.sweeps = _solve(
-            A, lower, upper, self._floats, self._integers, self._tolerance, self._most
-        )
+        self.sweeps = lexicographic(A, lower, upper, self.floats, self.integers)
         return self.sweeps > 0
 
 
 @compiled
-def _solve(
-    A: Array,
-    lower: Array,
-    upper: Array,
-    floats: Array,
-    integers: IntArray,
-    tolerance: float,
-    most: int,
+def lexicographic(
+    A: Array, lower: Array, upper: Array, floats: Array, integers: IntArray
 ) -> int:
-    """Try the last working set, then one from nothing; steps, negative on failure."""
-    w = unpack(floats, integers)
+    """Try the last working set, then one from nothing; steps, negative on failure.
+
+    Arguments as for `Lexicographic.solve`, and the arrays of its `Memory`.
+    """
+    w, tolerance, most = unpack(floats, integers), floats[TOLERANCE], integers[MOST]
     unbounded = _prepare(A, lower, upper, w, tolerance)
     steps, left = 0, GUESSES if unbounded or integers[SOLVED] else 0
     integers[SOLVED] = 0

@@ -10,10 +10,15 @@ import numpy as np
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner, python
 
-__all__ = ["Dual", "Memory", "Work", "unpack", "unpack_dual"]
+__all__ = [
+    "MOST", "SOLVED", "TOLERANCE", "Dual", "Memory", "Work", "unpack", "unpack_dual",
+]  # fmt: skip
 
-SIZES = 4
-"""The integers start with p, m, n and whether the working set is a solution's."""
+SOLVED, MOST, SIZES = 3, 4, 5
+"""The integers start with p, m, n, whether the working set is a solution's, and how
+many steps a method may take from nothing."""
+TOLERANCE, HEAD = 0, 1
+"""The floats start with the share of a level's norm below which nothing counts."""
 
 
 class Work(NamedTuple):
@@ -120,7 +125,7 @@ class Memory:
 
     def __init__(self, sizes: Sequence[int], n: int) -> None:
         p, m = len(sizes), int(sum(sizes))
-        self.floats = np.zeros(m * (3 * n + m + 7) + n * (n + 7) + p)
+        self.floats = np.zeros(HEAD + m * (3 * n + m + 7) + n * (n + 7) + p)
         self.integers = np.zeros(SIZES + 3 * p + 2 + 11 * m + 1, np.int_)
         self.integers[:3] = p, m, n
         self.views = python(unpack)(self.floats, self.integers)
@@ -142,7 +147,7 @@ def unpack(floats: Array, integers: IntArray) -> Work:
     fixed, i = integers[i : i + m], i + m
     released, i = integers[i : i + m], i + m
     stuck = integers[i : i + m]
-    scale, f = floats[:p], p
+    scale, f = floats[HEAD : HEAD + p], HEAD + p
     size, f = floats[f : f + m], f + m
     W, f = floats[f : f + m * n].reshape((m, n)), f + m * n
     V, f = floats[f : f + n * n].reshape((n, n)), f + n * n
@@ -172,7 +177,7 @@ def unpack_dual(floats: Array, integers: IntArray) -> Dual:
     known, i = integers[i : i + m], i + m
     pushing, i = integers[i : i + m], i + m
     column = integers[i : i + m]
-    f = p + m * (2 * n + 5) + n * (n + 5)
+    f = HEAD + p + m * (2 * n + 5) + n * (n + 5)
     P, f = floats[f : f + m * n].reshape((m, n)), f + m * n
     L, f = floats[f : f + m * m].reshape((m, m)), f + m * m
     point, f = floats[f : f + n], f + n

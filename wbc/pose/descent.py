@@ -15,7 +15,7 @@ import numpy as np
 
 from wbc.arrays import Array
 from wbc.hqp import solve_hierarchy
-from wbc.pose.goal import Goal, Level
+from wbc.pose.goal import Goal, Linear
 
 __all__ = ["Descent"]
 
@@ -132,8 +132,8 @@ class Descent:
         return None
 
     def _tangent(
-        self, u: Array, away: Array, levels: Sequence[Level]
-    ) -> tuple[Level, Array | None]:
+        self, u: Array, away: Array, levels: Sequence[Linear]
+    ) -> tuple[Linear, Array | None]:
         """Rows whose least squares is Newton's step, and a direction of a saddle.
 
         The Lagrangian of |u - wish|^2 / 2 has the Hessian I + sum lambda_i dd e_i; on
@@ -160,7 +160,7 @@ class Descent:
         return (rows, wanted), saddle
 
     def _step(
-        self, u: Array, levels: Sequence[Level], last: Level | None = None
+        self, u: Array, levels: Sequence[Linear], last: Linear | None = None
     ) -> Array:
         """Displacement that the levels, linearised, and then `last` ask for."""
         low = np.clip(self._low - u, -STEP, 0.0)

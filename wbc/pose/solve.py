@@ -44,7 +44,8 @@ def solve_pose(
     P4 solves the constraints of a task "to obtain the target pose closest to the
     previous waypoint". Only the positions of the tasks count; limits, and tasks of
     velocity alone, may stand among them and are left out: the joint limits always
-    hold. Levels are strict: a level is pursued only where those above it hold.
+    hold. Levels are strict: a level is pursued only where those above it hold. Give
+    what must hold and no more: the posture to stay near is the start, not a task.
 
     From the start the levels are brought to hold one after the other, then the
     configuration slides along where they hold until none nearby is nearer to the

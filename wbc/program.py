@@ -1,20 +1,21 @@
-"""The rows of all compiled tasks of a stack, in one call a tick."""
+"""The compiled tasks of a stack, as numbers that their runner reads."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, NoReturn, final
+from typing import NamedTuple, final
 
 import numpy as np
 
-from wbc.arrays import Array
+from wbc import slots
+from wbc.arrays import IntArray
 from wbc.errors import InputError
 from wbc.frames import Frames
 from wbc.kernel import WORLD, Kernel
 from wbc.pointers import address_of
 from wbc.state import State
 
-__all__ = ["Place", "RowsWriter"]
+__all__ = ["Place", "Program"]
 
 SCRATCH = 96
 NONE, BY_ITSELF = -1, -2
@@ -39,20 +40,26 @@ class Place(NamedTuple):
 
 
 @final
-class RowsWriter:
-    """Writes the rows of compiled tasks; bound to one State, whose memory it reads.
+class Program:
+    """The compiled tasks, bound to one State, whose memory they read.
 
     Args:
-        places: the tasks, all of one catalogue.
+        places: the tasks, all of one catalogue; at least one.
         state: where the robot's quantities lie.
         m: number of rows of the stack.
+
+    Attributes:
+        runner: the compiled tick of their catalogue.
+
+    Raises:
+        InputError: tasks of several catalogues.
     """
 
     def __init__(self, places: Sequence[Place], state: State, m: int) -> None:
         robot = state.robot
-        self._state, self._kernels = state, [place.kernel for place in places]
-        self._evaluate = self._kernels[0].evaluator
-        if any(kernel.evaluator is not self._evaluate for kernel in self._kernels):
+        self._kernels = [place.kernel for place in places]
+        self.runner = self._kernels[0].runner
+        if any(kernel.runner is not self.runner for kernel in self._kernels):
             raise InputError("compiled tasks of one stack must share one catalogue.")
         read = [name for p in places for name in (p.frame, p.second) if name]
         names = list(dict.fromkeys(read)) or [WORLD]
@@ -66,35 +73,19 @@ class RowsWriter:
                 self._gains[1, begin:end] = kernel.damping
         self._scratch = np.zeros((4, SCRATCH + 6 * robot.nv))
 
-    def write(self, A: Array, bands: Array) -> None:
-        """Write A (m, n) and bands (5, m): error, rate, drift, lower, upper."""
-        frames, state = self._frames, self._state
-        self._evaluate(
-            self._program,
-            self._gains,
-            frames.pointers,
-            frames.constants,
-            frames.blocks,
+    def enter(self, table: IntArray) -> None:
+        """Enter its addresses into a stack's table (`wbc.slots`)."""
+        frames = self._frames
+        table[slots.TASKS], table[slots.FRAMES] = len(self._kernels), len(frames.names)
+        table[slots.PROGRAM : slots.SCRATCH + 1] = [
+            address_of(self._program),
+            address_of(self._gains),
+            address_of(frames.pointers),
+            address_of(frames.constants),
+            address_of(frames.blocks),
             frames.jacobian,
-            self._scratch,
-            state.q,
-            state.v,
-            state.t,
-            state.dt,
-            A,
-            bands,
-        )
-
-    def __reduce__(self) -> NoReturn:
-        """Refuse copies and pickles, whose addresses would point elsewhere.
-
-        Raises:
-            InputError: always.
-        """
-        raise InputError(
-            "a controller reads Pinocchio's memory where it lies, so it cannot be "
-            "copied or pickled: make another one from the same robot and hierarchy."
-        )
+            address_of(self._scratch),
+        ]
 
 
 def _entry(place: Place, names: Sequence[str]) -> list[int]:
