@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.base import CatalogueTask, run_kernel
+from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
 from wbc import PD, FrameState, Kernel, Robot, Rows, State
 from wbc.arrays import Array, frozen, rotation
@@ -104,7 +104,8 @@ class KnifePose(CatalogueTask):
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
-        F, p = state.frame(self.frames[0]), self._parameters
+        F = flat_frame(state.frame(self.frames[0]), state.robot.nv)
+        p = self._parameters
         if not self.rocking:
             run_kernel(Code.POSE, p, NO_TABLE, F, state, out)
             return
