@@ -13,16 +13,18 @@ import numpy as np
 
 from sims.audit import audit
 from sims.benchmark import measure
-from sims.demo import Options, Outcome
+from sims.demo import Demo, Options, Outcome
 from sims.metrics import Metric, format_value, table, to_json, verdict
 from sims.registry import cell_names, find_demo
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
-from wbc import InputError
+from wbc import InputError, UnknownName
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
 
+RESOLVERS = ("hqp", "nullspace", "weighted")
+"""What is compared where nothing is named."""
 PACKAGES = ("wbc", "pin", "mujoco", "numba", "proxsuite", "qpsolvers", "numpy", "scipy")
 
 
@@ -37,6 +39,8 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     """Run a cell, print its metrics, and write them where asked."""
     demo = find_demo(name)
     make_resolver(options.resolver)
+    if options.experiment and options.experiment not in demo.experiments:
+        raise UnknownName("experiment", options.experiment, demo.experiments)
     folder = None if out is None else _folder(out)
     began = time.perf_counter()
     outcome = demo.run(options)
@@ -47,21 +51,35 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     return 0 if all(metric.holds for metric in outcome.metrics) else 1
 
 
-def compare(name: str, resolvers: list[str], options: Options, out: str | None) -> int:
-    """Run a cell under several resolvers and print their metrics side by side."""
+def compare(
+    name: str, resolvers: list[str] | None, options: Options, out: str | None
+) -> int:
+    """Run a cell in several ways and print their metrics side by side.
+
+    The ways are resolvers; without any named, a cell's experiments if it has some.
+    """
     demo = find_demo(name)
-    for resolver in resolvers:
-        make_resolver(resolver)
+    ways = _ways(demo, resolvers, options)
     folder = None if out is None else _folder(out)
     outcomes: dict[str, Outcome] = {}
-    for resolver in resolvers:
-        outcomes[resolver] = demo.run(replace(options, resolver=resolver))
+    for way, chosen in ways.items():
+        outcomes[way] = demo.run(chosen)
         if folder is not None:
-            inner = _folder(str(folder / resolver.replace(":", "-")))
-            chosen = replace(options, resolver=resolver)
-            _write(inner, f"{name} under {resolver}", chosen, outcomes[resolver])
-    print(_side_by_side({r: o.metrics for r, o in outcomes.items()}))
+            inner = _folder(str(folder / way.replace(":", "-")))
+            _write(inner, f"{name} under {way}", chosen, outcomes[way])
+    print(_side_by_side({way: o.metrics for way, o in outcomes.items()}))
     return 0
+
+
+def _ways(
+    demo: Demo, resolvers: list[str] | None, options: Options
+) -> dict[str, Options]:
+    if resolvers is None and demo.experiments:
+        return {name: replace(options, experiment=name) for name in demo.experiments}
+    names = list(RESOLVERS) if resolvers is None else resolvers
+    for name in names:
+        make_resolver(name)
+    return {name: replace(options, resolver=name) for name in names}
 
 
 def _side_by_side(columns: dict[str, list[Metric]]) -> str:

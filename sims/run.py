@@ -13,7 +13,7 @@ from sims.cell import Cell
 from sims.log import Log
 from wbc import Controller, InputError, Solution
 
-__all__ = ["Watcher", "run"]
+__all__ = ["CERTIFY_EVERY", "Bar", "Watcher", "run"]
 
 CERTIFY_EVERY = 50
 """Ticks between two certificates, which cost more than a tick."""
@@ -63,10 +63,10 @@ def run(
         )
     ticks = max(1, round(duration / dt))
     log = Log(cell, controller, ticks, sites)
-    bar = _Bar(label, ticks, quiet)
+    bar = Bar(label, ticks, quiet)
     certify = controller.resolver.name.startswith("hqp")
     for tick in range(ticks):
-        began = time.perf_counter()
+        began = time.process_time()  # of the processor, whatever else it runs
         seen = cell.observe()
         if script is not None:
             script(seen.t)
@@ -76,7 +76,7 @@ def run(
         cell.apply(solution.torque)
         log.record(tick, seen, solution, after - before)
         cell.step()
-        log.spent += time.perf_counter() - began
+        log.spent += time.process_time() - began
         if certify and tick % CERTIFY_EVERY == 0 and solution.ok:
             log.worst_certificate = max(
                 log.worst_certificate, solution.certificate().worst
@@ -88,7 +88,7 @@ def run(
     return log.trimmed()
 
 
-class _Bar:
+class Bar:
     """A progress bar on a terminal; silent anywhere else."""
 
     def __init__(self, label: str, ticks: int, quiet: bool) -> None:
@@ -97,6 +97,7 @@ class _Bar:
         self._stride = max(1, ticks // 100)
 
     def show(self, tick: int) -> None:
+        """Draw it after so many ticks."""
         if self._on and (tick % self._stride == 0 or tick == self._ticks):
             share = tick / self._ticks
             filled = "█" * round(30 * share)
@@ -104,5 +105,6 @@ class _Bar:
             sys.stderr.flush()
 
     def close(self) -> None:
+        """End its line."""
         if self._on:
             sys.stderr.write("\n")
