@@ -209,6 +209,21 @@ def test_a_pose_further_along_its_own_axis_is_that_far_away(arm, cases):
     assert_allclose(np.linalg.norm(shifted(X, 0.06).translation - X.translation), 0.06)
 
 
+def test_a_gripper_opens_to_a_width_and_refuses_one_that_it_has_not(arm):
+    cell = grasping.cell(arm, None)
+    gripper = Gripper(cell)
+    gripper.open(0.015)
+    for _ in range(600):
+        gripper.update()
+        cell.apply(arm.state(cell.truth[0]).gravity())
+        cell.step()
+    assert gripper.grip is Grip.OPEN
+    assert_allclose(gripper.gap, 0.015, atol=1e-4)
+    for width in (0.03, 0.0, np.nan):
+        with pytest.raises(InputError, match="width"):
+            gripper.open(width)
+
+
 def test_a_gripper_needs_fingers_and_no_more_force_than_they_have(arm, cases):
     cell = grasping.cell(arm, cases[0].cylinder)
     with pytest.raises(InputError, match=r"80\.0 N at most"):
