@@ -125,9 +125,19 @@ class Gripper:
         """Close with the force, from the next `update` on."""
         self._wanted, self._ticks = None, 0
 
-    def open(self) -> None:
-        """Open wide, from the next `update` on."""
-        self._wanted, self._ticks = OPENED, 0
+    def open(self, width: float = 2.0 * OPENED) -> None:
+        """Open to a width between the pads [m], from the next `update` on.
+
+        Raises:
+            InputError: not a width that the fingers can take.
+        """
+        half = 0.5 * positive(width, "width")
+        if half > OPENED:
+            raise InputError(
+                f"width is {width * 1e3:.1f} mm; the gripper opens to "
+                f"{2e3 * OPENED:.0f} mm at most."
+            )
+        self._wanted, self._ticks = half, 0
 
     def update(self) -> None:
         """Drive the fingers at this instant; once a tick."""

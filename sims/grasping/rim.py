@@ -8,21 +8,8 @@ import numpy as np
 
 from sims.grasping.motion import Reference
 from sims.grasping.plan import TCP
-from tasks import (
-    Cylinder,
-    DistanceToLine,
-    DistanceToPlane,
-    JointLimits,
-    Line,
-    MovingFrame,
-    ParallelLines,
-    Plane,
-    Point,
-    PointOnPlane,
-    Posture,
-    TorqueLimits,
-)
-from wbc import Hierarchy, Level
+from tasks import Cylinder, JointLimits, MovingFrame, Posture, TorqueLimits, rim_grasp
+from wbc import Hierarchy
 
 __all__ = ["RimGrasp"]
 
@@ -34,7 +21,7 @@ APPROACH, CLOSING = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 
 @final
 class RimGrasp:
-    """Torque limits >> joint limits >> rim grasp >> posture.
+    """Torque limits >> joint limits >> rim grasp (7 rows, rank 5) >> posture.
 
     The cylinder that the constraints speak of is led to the real one, comes to rest
     there, and leads the real one once it is in the grip. So the constraints hold from
@@ -54,7 +41,9 @@ class RimGrasp:
         self._carrier = MovingFrame(name="led cylinder")
         centre = (radius if flipped else -radius, 0.0, 0.0)
         cylinder = Cylinder(centre, -np.array(APPROACH), radius, on=self._carrier)
-        grasp = _five_rows(cylinder)
+        grasp = rim_grasp(
+            TCP, cylinder, approach=APPROACH, closing=CLOSING, stiffness=STIFFNESS
+        )
         self._posture = Posture(first.q, stiffness=100.0)
         self.hierarchy: Hierarchy = (
             TorqueLimits() >> JointLimits(margin=0.02) >> grasp >> self._posture
@@ -65,30 +54,3 @@ class RimGrasp:
         """Lead the cylinder, and the posture for what the rim leaves free."""
         self._carrier.set(reference.p, reference.R, reference.V, reference.A)
         self._posture.set_target(reference.q)
-
-
-def _five_rows(cylinder: Cylinder) -> Level:
-    """P4's four constraints, `tasks.rim_grasp`, less the two rows that others imply.
-
-    The closing direction is across the axis, and the axis along the gripper's plane,
-    as soon as the approach is parallel to the axis. While it nearly is, to a few
-    microradians, such rows are neither dependent nor independent: kept, they take the
-    free angle from the posture and give it back, many times a second.
-    """
-    origin = np.zeros(3)
-    plane = Plane(origin, np.cross(APPROACH, CLOSING), on=TCP)
-    top = Plane(cylinder.top, cylinder.direction, on=cylinder.on)
-    approach = Line(origin, APPROACH, on=TCP)
-    k = STIFFNESS
-    return (
-        PointOnPlane(
-            Point(cylinder.top, on=cylinder.on), plane, stiffness=k, name="rim radial"
-        )
-        + DistanceToLine(
-            TCP, cylinder.axis, cylinder.radius, stiffness=k, name="rim radius"
-        )
-        + DistanceToPlane(TCP, top, 0.0, stiffness=k, name="rim top")
-        + ParallelLines(
-            approach, cylinder.axis, sense="opposite", stiffness=k, name="rim approach"
-        )
-    )
