@@ -10,14 +10,17 @@ from numpy.typing import ArrayLike
 from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
 from wbc import PD, FrameState, Kernel, Robot, Rows, State
-from wbc.arrays import Array, frozen, rotation
-from wbc.errors import UnknownName
+from wbc.arrays import ROTATION_TOLERANCE, Array
+from wbc.errors import InputError, UnknownName
 from wbc.kernel import NO_TABLE
 
 __all__ = ["KnifePose"]
 
 STILL = np.zeros(6)
 STILL.flags.writeable = False
+IDENTITY = np.eye(3)
+SHAPES = ((3,), (3, 3), (6,), (6,))
+WHAT = ("position", "orientation", "twist", "acceleration")
 NORMAL, ACROSS, DOWN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
@@ -64,10 +67,9 @@ class KnifePose(CatalogueTask):
     ) -> None:
         turned = ("tilt 1", "tilt 2") if rocking else ("R x", "R y", "R z")
         rows = ("p x", "p y", "p z", *turned)
-        frames = (frame,) if sensor is None else (frame, sensor_frame)
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, frames)
-        self.rocking, self.sensor = rocking, sensor
+        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, (frame,))
+        self.rocking, self.sensor, self.sensor_frame = rocking, sensor, sensor_frame
         self._parameters = np.zeros(24)
         self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
         self.set_target(position, orientation)
@@ -84,23 +86,35 @@ class KnifePose(CatalogueTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(position, (3,), "target of the knife")
-        R = rotation(orientation, "target of the knife")
-        V = frozen(twist, (6,), "target twist of the knife")
-        A = frozen(acceleration, (6,), "target acceleration of the knife")
-        self._parameters[:] = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
-        self._axis[9:] = np.concatenate([R[:, 1], V[3:], A[3:]])
+        p, R, V, A = map(np.asarray, (position, orientation, twist, acceleration))
+        for array, shape, what in zip((p, R, V, A), SHAPES, WHAT, strict=True):
+            if array.shape != shape:
+                raise InputError(
+                    f"target {what} of '{self.name}' has shape {array.shape}; it must "
+                    f"be {shape}."
+                )
+        target = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
+        if not np.isfinite(target).all():
+            raise InputError(f"target of '{self.name}' must be finite, got {target}.")
+        if np.abs(R @ R.T - IDENTITY).max() > ROTATION_TOLERANCE or _turned(R) < 0.0:
+            raise InputError(f"orientation of '{self.name}' is no rotation: {R}.")
+        self._parameters[:] = target
+        self._axis[9:12], self._axis[12:15], self._axis[15:] = R[:, 1], V[3:], A[3:]
 
     def parameters(self, robot: Robot) -> Array:
         """Those of `FramePose`, live."""
         del robot
         return self._parameters
 
+    def check(self, robot: Robot) -> None:
+        """Both frames exist."""
+        super().check(robot)
+        if self.sensor is not None:
+            robot.frame_id(self.sensor_frame)
+
     def kernel(self, robot: Robot) -> Kernel | None:
-        """The compiled half, where neither sensor nor freedom needs Python."""
-        if self.rocking or self.sensor is not None:
-            return None
-        return super().kernel(robot)
+        """The compiled half; none for a rocking blade, with its rows of two kernels."""
+        return None if self.rocking else super().kernel(robot)
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
@@ -120,8 +134,14 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        F: FrameState = state.frame(self.frames[1])
+        F: FrameState = state.frame(self.sensor_frame)
         torque += F.J.T @ measured
+
+
+def _turned(R: Array) -> float:
+    """Determinant of R (3, 3): -1 for a mirror image."""
+    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
+    return float(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

@@ -98,8 +98,8 @@ class Stack:
         self._allocate(m, robot.nv)
         self._answer_size = 2 * robot.nv + m + len(self.levels)
         self._python = [term for term in self.terms if term.kernel is None]
-        python = [term.task for term in self._python]
-        self._advancing = [t for t in python if type(t).advance is not Task.advance]
+        everyone = [term.task for term in self.terms]
+        self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
         self._program: Program | None = None
         self._state: State | None = None
         self.tick = 0

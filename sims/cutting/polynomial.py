@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple, final
 
 import numpy as np
@@ -40,6 +40,8 @@ class Polynomial:
 
     coefficients: Array
     centre: float = 0.0
+    _powers: tuple[float, ...] = field(init=False, repr=False)
+    _parabola: bool = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Keep a read-only copy that is long enough for three derivatives."""
@@ -48,6 +50,9 @@ class Polynomial:
         padded[: given.size] = given
         checked = frozen(padded, padded.shape, "coefficients of a guide line")
         object.__setattr__(self, "coefficients", checked)
+        object.__setattr__(self, "_powers", tuple(checked[::-1].tolist()))
+        parabola = (checked[3:] == 0.0).all() and abs(checked[2]) > STRAIGHT
+        object.__setattr__(self, "_parabola", bool(parabola))
 
     @classmethod
     def fit(cls, x: ArrayLike, y: ArrayLike, order: int = 2) -> Polynomial:
@@ -83,7 +88,7 @@ class Polynomial:
         """The curve and three derivatives at x, by Horner's rule."""
         u = x - self.centre
         y = y1 = y2 = y3 = 0.0
-        for c in self.coefficients[::-1].tolist():
+        for c in self._powers:
             y3 = y3 * u + y2
             y2 = y2 * u + y1
             y1 = y1 * u + y
@@ -96,9 +101,9 @@ class Polynomial:
         P0 eq. (8) as corrected: the integral of sqrt(1 + (dy/dx)^2); in closed form
         for a parabola, by 40 Gauss points otherwise.
         """
-        bend = self.coefficients
-        if (bend[3:] == 0.0).all() and abs(bend[2]) > STRAIGHT:
+        if self._parabola:
             return self._antiderivative(b) - self._antiderivative(a)
+        bend = self.coefficients
         half = 0.5 * (b - a)
         x = 0.5 * (a + b) + half * NODES - self.centre
         slopes = np.polynomial.polynomial.polyval(x, bend[1:] * np.arange(1, bend.size))
@@ -106,6 +111,6 @@ class Polynomial:
 
     def _antiderivative(self, x: float) -> float:
         """[u sqrt(1 + u^2) + asinh u] / (4 a2) with u = y'(x)."""
-        a1, a2 = float(self.coefficients[1]), float(self.coefficients[2])
+        a1, a2 = self._powers[-2], self._powers[-3]
         u = 2.0 * a2 * (x - self.centre) + a1
         return (u * math.sqrt(1.0 + u * u) + math.asinh(u)) / (4.0 * a2)

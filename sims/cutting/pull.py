@@ -12,6 +12,8 @@ from wbc.arrays import Array
 
 __all__ = ["Pull"]
 
+REFRESH: Final = 4e-3
+"""Between two settings of the desired velocity, which changes slowly [s]."""
 BRAKING: Final = 200.0
 """What stops the arm once it has let go [N s/m]."""
 
@@ -48,6 +50,7 @@ class Pull:
         self._place = np.array(place)
         self._before: tuple[float, float] | None = None
         self._speed = self._measured = 0.0
+        self._set = -np.inf
 
     @property
     def steady(self) -> bool:
@@ -73,8 +76,10 @@ class Pull:
             self._measured = (y - self._before[1]) / dt
             self._speed += dt / self._memory * (self._measured - self._speed)
         self._before = (t, y)
-        speed = self._speed if self._released is None else 0.0
-        self._task.set_target(self._place, (0.0, speed, 0.0))
+        if t >= self._set + REFRESH:
+            self._set = t
+            speed = self._speed if self._released is None else 0.0
+            self._task.set_target(self._place, (0.0, speed, 0.0))
 
     def release(self, t: float, fall: float) -> None:
         """Let go from time t [s] on, within `fall` seconds."""
