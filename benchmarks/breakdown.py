@@ -62,14 +62,11 @@ def _parts(loop: Loop) -> dict[str, Call]:
     contender: Any = loop.contender
     controller = contender.controller
     try:
-        state, stack, solver = controller._state, controller._stack, controller._solver
+        state, stack = controller._state, controller._stack
         q, v, t = loop.q, loop.v, contender.t
-        vdot = solver.solve().vdot
         return {
             "- pin: State.refresh": lambda: state.refresh(q, v, t),
-            "- rows: Stack.update": lambda: stack.update(state),
-            "- solver": solver.solve,
-            "- torque": lambda: stack.torque(vdot),
+            "- compiled: rows, assembly, solver, torque": lambda: stack.resolve(state),
         }
     except AttributeError:
         return {}

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from benchmarks.alone import solver_tables
 from benchmarks.breakdown import breakdown_table
+from benchmarks.endurance import endurance_table
 from benchmarks.environments import PEERS, NotAvailable, default_cache, prepare
 from benchmarks.growth import growth_table
 from benchmarks.machine import describe
@@ -30,7 +31,7 @@ A tick goes from (q, v) to the torques; moving the references is timed apart. Pe
 weigh pose and posture in one QP, whatever levels we have. "dynamics": tau against
 RNEA(q, v, dv). "saturated": ticks with a torque at its limit.
 """
-SECTIONS = ("solver", "tick", "growth", "start")
+SECTIONS = ("solver", "tick", "growth", "start", "endurance")
 VARIANTS = ("nullspace:tsid", "nullspace:uf")
 """Resolvers that cost what "nullspace" does."""
 
@@ -68,6 +69,9 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--cache", type=Path, default=default_cache(), help="folder of the peers"
+    )
+    parser.add_argument(
+        "--ticks", type=int, default=0, metavar="N", help="of the section endurance"
     )
     options = parser.parse_args(arguments)
     options.peers = [] if options.peers == "none" else options.peers.split(",")
@@ -113,3 +117,5 @@ def _sections(
         yield growth_table(ours, quick, folder)
     if "start" in wanted:
         yield start_table(pythons, quick, folder)
+    if "endurance" in wanted:
+        yield endurance_table(options.ticks or (20_000 if quick else 200_000))

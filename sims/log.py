@@ -33,7 +33,7 @@ class Log:
         ranks: (T, p) directions that each level could use.
         p, R: site name -> (T, 3) and (T, 3, 3) true poses.
         tick: (T,) time of the controller's call [s].
-        spent: wall-clock time of control and simulation [s], certificates not counted.
+        spent: processor time of control and simulation [s], certificates not counted.
         failures: ticks that fell back.
         worst_certificate: largest residual of the sampled certificates, NaN if none.
     """

@@ -13,6 +13,8 @@ MODULES = {
     "cutting": "sims.cutting.demo",
     "welding": "sims.welding.demo",
     "constraints": "sims.constraints.demo",
+    "grasping": "sims.grasping.demo",
+    "contact": "sims.contact.demo",
 }
 
 

@@ -9,8 +9,6 @@ import numpy as np
 
 from wbc import InputError, UnknownName
 from wbc.arrays import Array, positive
-from wbc.compiled import compiled, inner
-from wbc.frames import cross_into
 
 __all__ = ["WristSensor"]
 
@@ -99,8 +97,9 @@ class WristSensor:
                 "between a body without joints and its parent."
             )
         self._dt = model.opt.timestep
-        self._begin = int(model.sensor(self._part("force")).adr[0])
-        self._mass, self._centre, self._inertia = _tool(model, body, self._id)
+        self._mass, self._first, self._second = _tool(model, body, self._id)
+        starts = [int(model.sensor(self._part(part)).adr[0]) for part in PARTS]
+        self._where = [slice(start, start + 3) for start in starts]
 
     def reset(self, data: mujoco.MjData) -> None:
         """Start bias, noise and filter again; the arm must be at rest and held."""
@@ -131,63 +130,17 @@ class WristSensor:
         The engine's acceleration of a frame is a - g already.
         """
         R = data.site_xmat[self._id].reshape(3, 3)
-        feel = data.sensordata[self._begin : self._begin + 3 * len(PARTS)]
-        return _exerted(R, feel, self._mass, self._centre, self._inertia)
+        force, torque, a, alpha, omega = (data.sensordata[k] for k in self._where)
+        w, swing = _skew(omega @ R), _skew(alpha @ R)
+        B, a = swing + w @ w, a @ R  # a point at r accelerates by a + B r
+        needs = self._mass * a + B @ self._first
+        T = B @ self._second + np.outer(a, self._first)
+        turns = np.array([T[2, 1] - T[1, 2], T[0, 2] - T[2, 0], T[1, 0] - T[0, 1]])
+        wrench: Array = (np.array([force - needs, torque - turns]) @ R.T).ravel()
+        return wrench
 
     def _part(self, part: str) -> str:
         return f"{self.name} {part}"
-
-
-@compiled
-def _exerted(
-    R: Array, feel: Array, mass: float, centre: Array, inertia: Array
-) -> Array:
-    """Wrench (6,) on the surroundings, world axes.
-
-    Args:
-        R: (3, 3) orientation of the site.
-        feel: (15,) what the engine reads there, in the order of `PARTS`: force and
-            torque in site axes, the others in world axes.
-        mass: of the tool.
-        centre: (3,) of its mass, site axes.
-        inertia: (3, 3) about it, site axes.
-    """
-    c, lever, swing = np.zeros(3), np.zeros(3), np.zeros(3)
-    force, moment, spin, out = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(6)
-    a, alpha, omega = feel[6:9], feel[9:12], feel[12:15]
-    _turn(R, centre, c)
-    cross_into(omega, c, lever)
-    cross_into(omega, lever, swing)
-    cross_into(alpha, c, lever)
-    for i in range(3):
-        force[i] = mass * (a[i] + lever[i] + swing[i])
-    cross_into(c, force, moment)
-    _spin(R, inertia, alpha, lever)
-    _spin(R, inertia, omega, swing)
-    cross_into(omega, swing, spin)
-    _turn(R, feel[0:3], c)
-    _turn(R, feel[3:6], out[3:])
-    for i in range(3):
-        out[i] = c[i] - force[i]
-        out[3 + i] -= moment[i] + lever[i] + spin[i]
-    return out
-
-
-@inner
-def _turn(R: Array, x: Array, out: Array) -> None:
-    """Out = R x."""
-    for i in range(3):
-        out[i] = R[i, 0] * x[0] + R[i, 1] * x[1] + R[i, 2] * x[2]
-
-
-@inner
-def _spin(R: Array, inertia: Array, omega: Array, out: Array) -> None:
-    """Out = R I R^T omega."""
-    local, spun = np.zeros(3), np.zeros(3)
-    for i in range(3):
-        local[i] = R[0, i] * omega[0] + R[1, i] * omega[1] + R[2, i] * omega[2]
-    _turn(inertia, local, spun)
-    _turn(R, spun, out)
 
 
 def _both(force: float, torque: float, what: str) -> Array:
@@ -197,24 +150,30 @@ def _both(force: float, torque: float, what: str) -> Array:
     return np.repeat([force, torque], 3)
 
 
-def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
-    """Mass, centre (3,) and inertia about it (3, 3) of a body and all it carries.
+def _skew(x: Array) -> Array:
+    """The matrix (3, 3) of x cross."""
+    a, b, c = x.tolist()
+    return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
 
-    In the axes of the site, at the posture of the compiled scene.
+
+def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
+    """Mass, first (3,) and second moments (3, 3) of a body and all it carries.
+
+    About the site and in its axes, at the posture of the compiled scene: the integrals
+    of 1, r and r r^T over the mass.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     p, R = data.site_xpos[site], data.site_xmat[site].reshape(3, 3)
+    first, second = np.zeros(3), np.zeros((3, 3))
     carried = [b for b in range(model.nbody) if _carries(model, body, b)]
-    m = model.body_mass[carried]
-    points = (data.xipos[carried] - p) @ R
-    centre = m @ points / max(float(m.sum()), 1e-12)
-    inertia = np.zeros((3, 3))
-    for b, mass, r in zip(carried, m, points - centre, strict=True):
+    for b in carried:
+        mass, r = model.body_mass[b], (data.xipos[b] - p) @ R
         turn = R.T @ data.ximat[b].reshape(3, 3)
-        inertia += turn @ np.diag(model.body_inertia[b]) @ turn.T
-        inertia += mass * (r @ r * np.eye(3) - np.outer(r, r))
-    return float(m.sum()), centre, inertia
+        inertia = turn @ np.diag(model.body_inertia[b]) @ turn.T
+        first += mass * r
+        second += 0.5 * np.trace(inertia) * np.eye(3) - inertia + mass * np.outer(r, r)
+    return float(model.body_mass[carried].sum()), first, second
 
 
 def _carries(model: mujoco.MjModel, body: int, other: int) -> bool:

@@ -1,8 +1,8 @@
 """The catalogue of tasks.
 
-Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometry (`PointOnPoint`,
-`PointOnLine`, `PointOnPlane`, `PointOnCurve`, `AxisAlignment`, `AxisAlongPath`),
-motion along paths (`TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
+Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
+(`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
+paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
 `Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
 (`JointLimits`, `JointLocking`, `TorqueLimits`). `KnifePose` guides a blade against
 what it cuts; `Clearance` keeps two arms of one model apart.
@@ -15,7 +15,31 @@ from tasks.curve import Curve
 from tasks.force import HybridForceMotion
 from tasks.forcelaw import ForceLaw
 from tasks.frame import FrameOrientation, FramePose, FramePosition
-from tasks.geometry import Line, Plane, PointOnLine, PointOnPlane, PointOnPoint
+from tasks.geometry import (
+    AngleBetweenLines,
+    Circle,
+    Cylinder,
+    DistanceToLine,
+    DistanceToPlane,
+    DistanceToPoint,
+    FrameMotion,
+    Line,
+    LineInPlane,
+    LineOnLine,
+    MovingFrame,
+    ParallelLines,
+    ParallelPlanes,
+    PerpendicularLines,
+    Plane,
+    PlaneOnPlane,
+    Point,
+    PointOnCircle,
+    PointOnCylinder,
+    PointOnLine,
+    PointOnPlane,
+    PointOnPoint,
+    rim_grasp,
+)
 from tasks.impedance import Admittance, Impedance
 from tasks.knife import KnifePose
 from tasks.limits import JointLimits, TorqueLimits
@@ -25,12 +49,19 @@ from tasks.posture import Damping, Posture
 
 __all__ = [
     "Admittance",
+    "AngleBetweenLines",
     "AxisAlignment",
     "AxisAlongPath",
+    "Circle",
     "Clearance",
     "Curve",
+    "Cylinder",
     "Damping",
+    "DistanceToLine",
+    "DistanceToPlane",
+    "DistanceToPoint",
     "ForceLaw",
+    "FrameMotion",
     "FrameOrientation",
     "FramePose",
     "FramePosition",
@@ -40,14 +71,25 @@ __all__ = [
     "JointLocking",
     "KnifePose",
     "Line",
+    "LineInPlane",
+    "LineOnLine",
+    "MovingFrame",
+    "ParallelLines",
+    "ParallelPlanes",
     "Path",
     "PathPoint",
+    "PerpendicularLines",
     "Plane",
+    "PlaneOnPlane",
+    "Point",
+    "PointOnCircle",
     "PointOnCurve",
+    "PointOnCylinder",
     "PointOnLine",
     "PointOnPlane",
     "PointOnPoint",
     "Posture",
     "TorqueLimits",
     "TravelSpeed",
+    "rim_grasp",
 ]

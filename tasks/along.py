@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
-from tasks.path import Path
+from tasks.path import Path, still
 from wbc import PD, Damper, Robot
 from wbc.arrays import Array, frozen, positive
 from wbc.errors import InputError
@@ -50,7 +50,7 @@ class PointOnCurve(CatalogueTask):
         law = PD(stiffness, damping)
         rows = ("across 1", "across 2")
         super().__init__(name or f"{frame} on curve", "m", rows, law, (frame,))
-        self.curve = curve
+        self.curve = still(curve, self.name)
 
     def parameters(self, robot: Robot) -> Array:
         """None."""
@@ -102,7 +102,7 @@ class TravelSpeed(CatalogueTask):
     ) -> None:
         law = Damper(positive(gain, "gain"))
         super().__init__(name or f"{frame} speed", "m/s", ("along",), law, (frame,))
-        self.path, self.speed = path, positive(speed, "speed")
+        self.path, self.speed = still(path, self.name), positive(speed, "speed")
         self.ramp = positive(ramp, "ramp")
         self.start = float(frozen(start, (), "start"))
         self.end = path.length if end is None else positive(end, "end")

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
-from tasks.geometry import perpendicular
+from tasks.geometry.features import perpendicular
 from tasks.kernels.paths import direction as path_direction
-from tasks.path import Path, PathPoint
+from tasks.path import Path, PathPoint, still
 from wbc import PD, Robot
 from wbc.arrays import Array, frozen, unit
 from wbc.errors import InputError
@@ -122,7 +122,7 @@ class AxisAlongPath(CatalogueTask):
     ) -> None:
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} along path", "rad", ROWS, law, (frame,))
-        self._triad, self.path = triad(axis, self.name), path
+        self._triad, self.path = triad(axis, self.name), still(path, self.name)
         if not np.isfinite([work, travel]).all():
             raise InputError(f"angles of '{self.name}' must be finite.")
         self.work, self.travel = float(work), float(travel)

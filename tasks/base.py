@@ -6,13 +6,15 @@ from abc import abstractmethod
 
 import numpy as np
 
-from tasks.evaluator import SCRATCH, Code, evaluate, write_rows
+from tasks.evaluator import SCRATCH, Code, evaluate, run
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
+from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
-from wbc.kernel import NO_TABLE
+from wbc.kernel import NO_TABLE, WORLD
+from wbc.relative import moved, relative
 
-__all__ = ["CatalogueTask", "run_kernel"]
+__all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
 
 
 class CatalogueTask(MotionTask):
@@ -23,6 +25,8 @@ class CatalogueTask(MotionTask):
     """
 
     code: Code
+    moving: Array | None = None
+    """A frame that moves by itself, in the place of the world among the frames."""
 
     @abstractmethod
     def parameters(self, robot: Robot) -> Array:
@@ -44,40 +48,62 @@ class CatalogueTask(MotionTask):
         m = len(self.row_names(robot))
         stiffness = self.law.stiffness if isinstance(self.law, PD) else np.zeros(())
         return Kernel(
-            write_rows,
+            run,
             int(self.code),
             self.live_parameters(robot),
             self.table(robot),
             np.broadcast_to(stiffness, (m,)),
             np.broadcast_to(self.law.damping, (m,)),
+            self.moving,
         )
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
         robot = state.robot
-        F = state.frame(self.frames[0]) if self.frames else None
+        F = self._seen(state)
         run_kernel(self.code, self.parameters(robot), self.table(robot), F, state, out)
+
+    def _seen(self, state: State) -> Array | None:
+        """The task's frame, as seen from its second one if it has two."""
+        n, flat = state.robot.nv, []
+        for name in self.frames:
+            flat.append(flat_frame(state.frame(name), n))
+            if name == WORLD and self.moving is not None:
+                moved(self.moving, state.t, flat[-1])
+        if len(flat) == 2:
+            seen = np.zeros(frame_size(n))
+            relative(flat[0], flat[1], seen, np.zeros(SCRATCH), n)
+            return seen
+        return flat[0] if flat else None
 
 
 def run_kernel(
     code: Code,
     parameters: Array,
     table: Array,
-    F: FrameState | None,
+    F: Array | None,
     state: State,
     out: Rows,
 ) -> None:
-    """Write one task's rows at a state."""
+    """Write one task's rows at a state; F is a flat frame."""
     n = state.robot.nv
     evaluate(
         int(code),
-        parameters,
-        table,
-        frame_at(np.zeros(frame_size(n)), n) if F is None else F,
-        state.q,
-        state.v,
+        np.array(parameters),  # one memory layout, so that one compilation serves all
+        np.array(table),
+        python(frame_at)(np.zeros(frame_size(n)) if F is None else F, n),
+        np.array(state.q),
+        np.array(state.v),
         state.t,
         state.dt,
         np.zeros(SCRATCH + n),
         out,
     )
+
+
+def flat_frame(F: FrameState, n: int) -> Array:
+    """A frame as kernels lay it out."""
+    flat = np.empty(frame_size(n))
+    for target, source in zip(python(frame_at)(flat, n), F, strict=True):
+        target[:] = source
+    return flat

@@ -4,35 +4,38 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from tasks.kernels.constraints import constraint
 from tasks.kernels.joints import at_rest, at_target, joint_bounds, torque_bounds
 from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
-from tasks.kernels.points import on_line, on_plane, on_point
+from tasks.kernels.points import on_point
 from tasks.kernels.rotations import along, orientation, pose
+from wbc import slots
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled
+from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
-from wbc.pointers import floats_at
+from wbc.pointers import floats_at, integers_at
+from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
+from wbc.tick import conclude
 
-__all__ = ["SCRATCH", "Code", "evaluate", "write_rows"]
+__all__ = ["SCRATCH", "Code", "evaluate", "run"]
 
 
 class Code(IntEnum):
     """Which kernel computes a task's rows."""
 
     ON_POINT = 0
-    ON_LINE = 1
-    ON_PLANE = 2
-    ORIENTATION = 3
-    POSE = 4
-    ALONG = 5
-    ON_CURVE = 6
-    SPEED = 7
-    ALONG_PATH = 8
-    AT_TARGET = 9
-    AT_REST = 10
-    JOINT_BOUNDS = 11
-    TORQUE_BOUNDS = 12
+    CONSTRAINT = 1
+    ORIENTATION = 2
+    POSE = 3
+    ALONG = 4
+    ON_CURVE = 5
+    SPEED = 6
+    ALONG_PATH = 7
+    AT_TARGET = 8
+    AT_REST = 9
+    JOINT_BOUNDS = 10
+    TORQUE_BOUNDS = 11
 
 
 @compiled
@@ -54,7 +57,8 @@ def evaluate(
         code: of the kernel.
         p: the task's parameters.
         table: more of them.
-        F: its frame; any frame for tasks without one.
+        F: its frame, as seen from its second one if it has two; any frame for tasks
+            without one.
         q: (n,) positions.
         v: (n,) velocities.
         t: time [s].
@@ -65,39 +69,65 @@ def evaluate(
     if code == 0:
         on_point(p, F, out)
     elif code == 1:
-        on_line(p, F, out)
+        constraint(p, F, v, scratch, out)
     elif code == 2:
-        on_plane(p, F, out)
-    elif code == 3:
         orientation(p, F, scratch, out, 0)
-    elif code == 4:
+    elif code == 3:
         pose(p, F, scratch, out)
-    elif code == 5:
+    elif code == 4:
         along(p, F, scratch, out)
-    elif code == 6:
+    elif code == 5:
         on_curve(table, F, scratch, out)
-    elif code == 7:
+    elif code == 6:
         speed(p, table, F, t, scratch, out)
-    elif code == 8:
+    elif code == 7:
         along_path(p, table, F, scratch, out)
-    elif code == 9:
+    elif code == 8:
         at_target(p, table, q, out)
-    elif code == 10:
+    elif code == 9:
         at_rest(table, v, out)
-    elif code == 11:
+    elif code == 10:
         joint_bounds(p, table, q, v, dt, out)
-    elif code == 12:
+    elif code == 11:
         torque_bounds(p, out)
 
 
 @compiled
-def write_rows(
+def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) -> int:
+    """Update the frames, write the rows of all tasks, and conclude the tick.
+
+    It is the runner of this catalogue's kernels; `wbc.tick` tells its arguments and
+    what it returns.
+    """
+    n, m = table[slots.JOINTS], table[slots.ROWS]
+    f, tasks, spare = table[slots.FRAMES], table[slots.TASKS], SCRATCH + 6 * n
+    pointers = integers_at(table[slots.POINTERS], f * 6).reshape((f, 6))
+    constants = floats_at(table[slots.CONSTANTS], f * (15 + n)).reshape((f, 15 + n))
+    blocks = floats_at(table[slots.BLOCKS], f * (24 + 6 * n)).reshape((f, 24 + 6 * n))
+    scratch = floats_at(table[slots.SCRATCH], 4 * spare).reshape((4, spare))
+    jacobian = table[slots.JACOBIAN]
+    for i in range(f):
+        update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch[1], n)
+    _write_rows(
+        integers_at(table[slots.PROGRAM], tasks * 10).reshape((tasks, 10)),
+        floats_at(table[slots.GAINS], 2 * m).reshape((2, m)),
+        blocks,
+        scratch,
+        q,
+        v,
+        t,
+        dt,
+        floats_at(table[slots.RAW], m * n).reshape((m, n)),
+        floats_at(table[slots.BANDS], 5 * m).reshape((5, m)),
+    )
+    return conclude(table, out)
+
+
+@inner
+def _write_rows(
     program: IntArray,
     gains: Array,
-    pointers: IntArray,
-    constants: Array,
     blocks: Array,
-    jacobian: int,
     scratch: Array,
     q: Array,
     v: Array,
@@ -106,17 +136,16 @@ def write_rows(
     A: Array,
     bands: Array,
 ) -> None:
-    """Update the frames, then the rows of all tasks; an evaluator of `wbc.kernel`.
+    """The rows of all tasks, and the accelerations that their laws want of them.
 
     Args:
-        program: (k, 8) for each task: code, frame, first row, end, address and size of
-            parameters, address and size of the table.
+        program: (k, 10) for each task: code, frame, first row, end, address and size of
+            parameters, address and size of the table, second frame (-1 for none),
+            address of a frame that moves by itself (0 for none; it takes the place of
+            the frame that is -2).
         gains: (2, m) stiffness and damping of every row; negative for bounds.
-        pointers: of `wbc.frames.Frames`.
-        constants: of the same.
-        blocks: of the same; written.
-        jacobian: of the same.
-        scratch: (2, 96 + n) numbers on the way.
+        blocks: the frames, flat.
+        scratch: (4, 96 + 6 n) numbers on the way; the last row starts as zeros.
         q: (n,) positions.
         v: (n,) velocities.
         t: time [s].
@@ -125,10 +154,8 @@ def write_rows(
         bands: (5, m) error, rate, drift, lower, upper are written.
     """
     n = q.size
-    for f in range(pointers.shape[0]):
-        update_frame(blocks[f], pointers[f], constants[f], jacobian, scratch[1], n)
     for k in range(program.shape[0]):
-        code, frame, begin, end = program[k, :4]
+        code, begin, end = program[k, 0], program[k, 2], program[k, 3]
         out = Rows(
             bands[0, begin:end],
             bands[1, begin:end],
@@ -140,7 +167,7 @@ def write_rows(
         p = floats_at(program[k, 4], program[k, 5])
         table = floats_at(program[k, 6], program[k, 7])
         out.rate[:] = 0.0
-        F = frame_at(blocks[frame], n)
+        F = _seen(program[k], blocks, scratch, t, n)
         evaluate(code, p, table, F, q, v, t, dt, scratch[0], out)
         for i in range(begin, end):
             if gains[0, i] >= 0.0:
@@ -148,3 +175,20 @@ def write_rows(
                     bands[1, i] += A[i, j] * v[j]
                 wish = gains[0, i] * bands[0, i] + gains[1, i] * bands[1, i]
                 bands[3, i] = bands[4, i] = -wish - bands[2, i]
+
+
+@inner
+def _seen(
+    entry: IntArray, blocks: Array, scratch: Array, t: float, n: int
+) -> FrameState:
+    """The frame that a task reads, as seen from its second one if it has two."""
+    first, second = entry[1], entry[8]
+    if second == -1:
+        return frame_at(blocks[first], n)
+    by_itself = scratch[3]
+    if entry[9] != 0:
+        moved(floats_at(entry[9], MOVING_SIZE), t, by_itself)
+    F = by_itself if first == -2 else blocks[first]
+    G = by_itself if second == -2 else blocks[second]
+    relative(F, G, scratch[2], scratch[1], n)
+    return frame_at(scratch[2], n)

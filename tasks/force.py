@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from tasks.contact import Contact
 from tasks.forcelaw import ForceLaw
 from tasks.touch import TouchTask
 from wbc import PD, FrameState, Robot, Rows, State
@@ -18,8 +19,6 @@ from wbc.errors import InputError
 __all__ = ["HybridForceMotion"]
 
 STILL = np.zeros(3)
-LOST = 0.05
-"""Contact counts as lost once the force stayed low for so long [s]."""
 
 
 @final
@@ -82,13 +81,18 @@ class HybridForceMotion(TouchTask):
         S = _selection(selection, name)
         super().__init__(name, "m, N", frame, S.size, axes, sensor, sensor_frame)
         self._S = S
+        self.claims = tuple(
+            f"{kind} of sensor '{sensor}'"
+            for kind, rows in (("force", S[:3]), ("moment", S[3:]))
+            if rows.any()
+        )
         self._f, self._m = np.flatnonzero(S), np.flatnonzero(S == 0.0)
         self.law = law or ForceLaw()
         self.motion_law = PD(stiffness, damping)
         self.force_damping = per_row(force_damping, "force_damping")
         self.approach = positive(approach, "approach", zero=True)
-        self.threshold = positive(threshold, "threshold")
-        self._target = np.zeros((4, 6))
+        self._contact = Contact(threshold)
+        self._target = np.zeros((3, 6))
         self._R_d = np.eye(3)
         if S.size == 6 and orientation is None:
             raise InputError(f"'{name}' has six rows: give it an orientation.")
@@ -113,7 +117,7 @@ class HybridForceMotion(TouchTask):
         a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
         if orientation is not None:
             self._R_d = rotation(orientation, f"target of '{self.name}'")
-        self._target[:3, :3] = p, v, a
+        self._target[:, :3] = p, v, a
 
     def set_force(self, force: ArrayLike) -> None:
         """Change F_d, (3,) or (6,) in D; motion rows ignore theirs.
@@ -125,7 +129,8 @@ class HybridForceMotion(TouchTask):
 
     def reset(self) -> None:
         """Forget the integral term and the contact."""
-        self._held, self._touching, self._low = np.zeros(self._f.size), False, 0.0
+        self._contact.reset()
+        self._held = np.zeros(self._f.size)
         self._measured, self._felt = np.zeros(self._f.size), np.zeros(6)
         self._p = self._target[0, :3].copy()
 
@@ -142,7 +147,7 @@ class HybridForceMotion(TouchTask):
     @property
     def touching(self) -> bool:
         """Whether contact was felt at the last tick."""
-        return self._touching
+        return self._contact.touching
 
     @property
     def Omega_f(self) -> Array:
@@ -169,6 +174,12 @@ class HybridForceMotion(TouchTask):
                     "give one number, or one a row."
                 )
 
+    def row_units(self, rows: int) -> tuple[str, ...]:
+        """Metres and radians where it moves, newtons and newton metres where not."""
+        kinds = (("m", "N"), ("rad", "Nm"))
+        pressed = self._S.astype(int)
+        return tuple(kinds[i // 3][pressed[i]] for i in range(rows))
+
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
         F = self._kinematics(state, rows)
@@ -181,13 +192,15 @@ class HybridForceMotion(TouchTask):
         """Add J_f^T F_s to the torques, and move on contact and integral term."""
         if not self._f.size:
             return
-        if self._touching:
+        if self._contact.touching:
             torque += self._J.T @ self._measured
         self._held = self.law.integrate(self._held, self._held_rate, state.dt)
-        self._feel(state.dt)
+        size = float(np.linalg.norm(self._measured))
+        if self._contact.feel(size, state.dt) and self.law.integral == 0.0:
+            self._held[:] = 0.0  # nothing would unlearn it
 
     def _motion(self, F: FrameState, rows: Rows) -> None:
-        p, v, a = self._target[:3]
+        p, v, a = self._target
         error, self._p = np.zeros(6), F.p
         error[:3] = F.p - p[:3]
         if self.size == 6:
@@ -208,7 +221,7 @@ class HybridForceMotion(TouchTask):
         mobility = J @ np.linalg.solve(state.M, J.T)
         rows.rate[f] = 0.0
         rows.error[f] = self._measured - desired
-        if self._touching:
+        if self._contact.touching:
             wish = self.law.command(desired, self._measured, self._held)
             acceleration = mobility @ (wish - self._measured)
             acceleration -= self.force_damping * speed
@@ -225,17 +238,6 @@ class HybridForceMotion(TouchTask):
         linear = np.where(self._f < 3, desired, 0.0)
         size = float(np.linalg.norm(linear))
         return self.approach / size * linear if size > 0.0 else linear
-
-    def _feel(self, dt: float) -> None:
-        """Contact begins at the threshold and ends when the force stays below half."""
-        size = float(np.linalg.norm(self._measured))
-        if size >= self.threshold:
-            if not self._touching and self.law.integral == 0.0:
-                self._held[:] = 0.0
-            self._touching, self._low = True, 0.0
-        elif size < 0.5 * self.threshold:
-            self._low += dt
-            self._touching = self._touching and self._low < LOST
 
 
 def _selection(selection: Sequence[int], task: str) -> Array:

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.base import CatalogueTask, run_kernel
+from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
 from wbc import PD, FrameState, Kernel, Robot, Rows, State
 from wbc.arrays import ROTATION_TOLERANCE, Array
@@ -67,10 +67,9 @@ class KnifePose(CatalogueTask):
     ) -> None:
         turned = ("tilt 1", "tilt 2") if rocking else ("R x", "R y", "R z")
         rows = ("p x", "p y", "p z", *turned)
-        frames = (frame,) if sensor is None else (frame, sensor_frame)
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, frames)
-        self.rocking, self.sensor = rocking, sensor
+        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, (frame,))
+        self.rocking, self.sensor, self.sensor_frame = rocking, sensor, sensor_frame
         self._parameters = np.zeros(24)
         self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
         self.set_target(position, orientation)
@@ -107,13 +106,20 @@ class KnifePose(CatalogueTask):
         del robot
         return self._parameters
 
+    def check(self, robot: Robot) -> None:
+        """Both frames exist."""
+        super().check(robot)
+        if self.sensor is not None:
+            robot.frame_id(self.sensor_frame)
+
     def kernel(self, robot: Robot) -> Kernel | None:
         """The compiled half; none for a rocking blade, with its rows of two kernels."""
         return None if self.rocking else super().kernel(robot)
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
-        F, p = state.frame(self.frames[0]), self._parameters
+        F = flat_frame(state.frame(self.frames[0]), state.robot.nv)
+        p = self._parameters
         if not self.rocking:
             run_kernel(Code.POSE, p, NO_TABLE, F, state, out)
             return
@@ -128,7 +134,7 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        F: FrameState = state.frame(self.frames[1])
+        F: FrameState = state.frame(self.sensor_frame)
         torque += F.J.T @ measured
 
 

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias, final, get_args
 import numpy as np
 
 from tasks.base import run_kernel
-from tasks.evaluator import Code, write_rows
+from tasks.evaluator import Code, run
 from wbc import Kernel, Robot, Rows, State, Task, UnknownName
 from wbc.arrays import positive
 from wbc.errors import InputError
@@ -45,7 +45,7 @@ class TorqueLimits(Task):
     def kernel(self, robot: Robot) -> Kernel:
         """The compiled half."""
         limit = self.fraction * robot.tau_max
-        return Kernel(write_rows, int(Code.TORQUE_BOUNDS), limit)
+        return Kernel(run, int(Code.TORQUE_BOUNDS), limit)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
@@ -113,7 +113,7 @@ class JointLimits(Task):
         parameters = np.array([self.braking, float(self.integrator == "exact")])
         low, high = robot.q_min + self.margin, robot.q_max - self.margin
         table = np.concatenate([low, high, robot.v_max, robot.a_max])
-        return Kernel(write_rows, int(Code.JOINT_BOUNDS), parameters, table)
+        return Kernel(run, int(Code.JOINT_BOUNDS), parameters, table)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from tasks.kernels.paths import locate, write_point
 from wbc.arrays import Array, frozen
+from wbc.errors import InputError
 
-__all__ = ["Path", "PathPoint"]
+__all__ = ["Path", "PathPoint", "still"]
 
 
 @final
@@ -42,10 +43,12 @@ class Path(ABC):
     Attributes:
         length: s runs from 0 to here [m]; infinite for an unbounded line.
         table: what the kernels of `tasks.kernels.paths` read of it.
+        on: what carries it, None for the world.
     """
 
     length: float
     table: Array
+    on: object = None
 
     def locate(self, p: ArrayLike) -> float:
         """Position s [m] of the path's point nearest to p (3,)."""
@@ -56,3 +59,16 @@ class Path(ABC):
         rows = np.zeros((4, 9))
         write_point(self.table, float(s), rows)
         return PathPoint(rows)
+
+
+def still(path: Path, task: str) -> Path:
+    """The path, which a task follows in the world.
+
+    Raises:
+        InputError: something carries it.
+    """
+    if path.on is not None:
+        raise InputError(
+            f"'{task}' follows a path in the world, but {path.on!r} carries this one."
+        )
+    return path

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from wbc import FrameState, Robot, Rows, State, Task
 from wbc.arrays import Array, rotation
-from wbc.errors import InputError
+from wbc.errors import InputError, SolverError
 
 __all__ = ["TouchTask"]
 
@@ -48,7 +48,7 @@ class TouchTask(Task):
         super().__init__(name, unit, (frame, sensor_frame))
         self.frame, self.sensor, self.sensor_frame = frame, sensor, sensor_frame
         self.size = rows
-        self._R = np.eye(3)
+        self._R, self._heard = np.eye(3), False
         if axes is not None:
             self.set_axes(axes)
 
@@ -70,6 +70,10 @@ class TouchTask(Task):
         del robot
         kinds = ("p", "R")[: self.size // 3]
         return tuple(f"{kind} {axis}" for kind in kinds for axis in AXES)
+
+    def wish_units(self, rows: int) -> tuple[str, ...]:
+        """All rows are accelerations, those that press too."""
+        return (("m/s^2",) * 3 + ("rad/s^2",) * 3)[:rows]
 
     @abstractmethod
     def reset(self) -> None:
@@ -96,8 +100,15 @@ class TouchTask(Task):
         return F
 
     def _wrench(self, state: State, F: FrameState) -> Array:
-        """Measured wrench (6,) about F's origin, of the robot ON its surroundings."""
+        """Measured wrench (6,) about F's origin, of the robot ON its surroundings.
+
+        Raises:
+            InputError: the sensor never was there.
+            SolverError: it fell silent, so that the controller holds the robot.
+        """
         measured = state.wrenches.get(self.sensor)
+        if measured is None and self._heard:
+            raise SolverError(f"force sensor '{self.sensor}' fell silent.")
         if measured is None:
             known = ", ".join(state.wrenches) or "(none)"
             raise InputError(
@@ -105,6 +116,7 @@ class TouchTask(Task):
                 f"controller was told of: {known}. Pass wrenches={{'{self.sensor}': "
                 "...}, or name another one with sensor=..."
             )
+        self._heard = True
         f0, f1, f2 = measured[:3].tolist()
         a0, a1, a2 = (state.frame(self.sensor_frame).p - F.p).tolist()
         wrench = measured.copy()

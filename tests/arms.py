@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import xml.etree.ElementTree as ET
 from functools import cache
 
 import numpy as np
@@ -25,6 +27,7 @@ TORQUE = np.array([176.0, 176, 100, 100, 100, 38, 38])
 HOME = np.array([0.0, 0.5, 0.0, -1.2, 0.0, 0.9, 0.0])
 TIP = 0.178
 ARMATURE = 0.01
+UPPER, LOWER = 0.5, 0.3
 
 
 def _numbers(values) -> str:
@@ -107,3 +110,53 @@ def random_arm(rng: np.random.Generator, n: int) -> Robot:
 
 ROBOTS = {"racer": six_axis, "seven": seven_axis}
 TIPS = {"racer": "torch_tip", "seven": "tip"}
+
+
+def two_arms_mjcf() -> str:
+    """Two of the seven-axis arms in one model, face to face: left_* and right_*."""
+    arm = ET.fromstring(seven_axis_mjcf())
+    world, motors = arm.find("worldbody"), arm.find("actuator")
+    assert world is not None
+    assert motors is not None
+    left = world[0]
+    right = copy.deepcopy(left)
+    right.set("pos", "1.1 0 0")
+    right.set("quat", "0 0 0 1")
+    world.remove(left)
+    ET.SubElement(world, "body", name="floor").extend([left, right])
+    for side, base in (("left", left), ("right", right)):
+        for element in base.iter():
+            if "name" in element.attrib:
+                element.set("name", f"{side}_{element.get('name')}")
+    for motor in list(motors):
+        other = copy.deepcopy(motor)
+        for side, one in (("left", motor), ("right", other)):
+            one.set("name", f"{side}_{one.get('name')}")
+            one.set("joint", f"{side}_{one.get('joint')}")
+        motors.append(other)
+    for numeric in arm.iter("numeric"):
+        numeric.set("data", f"{numeric.get('data')} {numeric.get('data')}")
+    for key in arm.iter("key"):
+        key.set("qpos", f"{key.get('qpos')} {key.get('qpos')}")
+    return ET.tostring(arm, encoding="unicode")
+
+
+@cache
+def two_arms() -> Robot:
+    return Robot.from_mjcf(two_arms_mjcf(), name="two arms")
+
+
+def two_link(low: float = -3.1, high: float = 3.1) -> Robot:
+    """A planar arm about z, links of 0.5 and 0.3 m; limits of its elbow [rad]."""
+    inertial = '<inertial mass="1" pos="0.1 0 0" diaginertia="0.01 0.01 0.01"/>'
+    return Robot.from_mjcf(
+        '<mujoco model="2R"><compiler angle="radian"/><option gravity="0 0 0"/>'
+        f'<worldbody><body name="upper">{inertial}'
+        '<joint name="shoulder" axis="0 0 1" range="-3.1 3.1"/>'
+        f'<body name="lower" pos="{UPPER} 0 0">{inertial}'
+        f'<joint name="elbow" axis="0 0 1" range="{low} {high}"/>'
+        f'<site name="tip" pos="{LOWER} 0 0"/></body></body></worldbody>'
+        '<actuator><motor joint="shoulder" ctrlrange="-50 50"/>'
+        '<motor joint="elbow" ctrlrange="-50 50"/></actuator></mujoco>',
+        velocity_limit=3.0,
+    )

@@ -18,6 +18,7 @@ from wbc import Hierarchy, Level, Robot, Rows, State, Task
 
 Kind = Literal["exact", "near zero", "velocity", "force", "bounds"]
 Rng = np.random.Generator
+FELT = np.array([3.0, -8.0, 11.0, 0.4, 0.2, -0.7])  # [N, Nm]
 
 
 def _still(t: float) -> None:
@@ -54,12 +55,12 @@ def tip(robot: Robot) -> str:
 def random_state(robot: Robot, rng: Rng, t: float = 0.0) -> State:
     """Inside the position limits (or a turn), at a good part of the speed limits.
 
-    A sensor "wrist" feels a random wrench.
+    A sensor "wrist" feels a wrench.
     """
     low, high = np.maximum(robot.q_min, -3.0), np.minimum(robot.q_max, 3.0)
     q = rng.uniform(low, high)
     v = rng.uniform(-0.5, 0.5, robot.nv) * robot.v_max
-    return robot.state(q, v, t, wrenches={"wrist": 10.0 * rng.normal(size=6)})
+    return robot.state(q, v, t, wrenches={"wrist": FELT})
 
 
 def random_rotation(rng: Rng, size: float = 2.0) -> np.ndarray:
@@ -162,8 +163,136 @@ def _along(state: State, rng: Rng, aligned: bool) -> Subject:
     )
 
 
-def _line(state: State, rng: Rng, aligned: bool) -> tasks.Line:
-    return tasks.Line(_near(state, rng, aligned), rng.normal(size=3))
+CARRIERS = ("world", "set", "steady", "function", "robot")
+"""What the other feature of a constraint can be fixed in."""
+MIDDLE = {"racer": "link3", "seven": "link4"}
+"""A frame further up the arm, for features of the same robot."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A carrier somewhere, its pose now, and how to put it where it is at time t."""
+
+    on: tasks.geometry.features.Carrier
+    p: np.ndarray
+    R: np.ndarray
+    move: Callable[[float], None] = _still
+
+    def local(self, point: np.ndarray) -> np.ndarray:
+        """A point of the world in the carrier's axes."""
+        return self.R.T @ (point - self.p)
+
+
+def place(kind: str, state: State, rng: Rng) -> Place:
+    """A carrier of a kind, in general position and motion."""
+    if kind == "world":
+        return Place(None, np.zeros(3), np.eye(3))
+    if kind == "robot":
+        F = state.frame(MIDDLE[state.robot.name])
+        return Place(MIDDLE[state.robot.name], F.p, F.R)
+    p, R, turn = rng.normal(size=3), random_rotation(rng), turning(rng)
+    v, a, spin = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3)
+    if kind == "steady":
+        return Place(
+            tasks.MovingFrame.steady(
+                v, spin=spin, acceleration=a, position=p, orientation=R, start=state.t
+            ),
+            p,
+            R,
+        )
+
+    def at(t: float) -> tasks.FrameMotion:
+        turned, omega, alpha = turn(t)
+        return tasks.FrameMotion(
+            p + t * v + 0.5 * t * t * a,
+            turned @ R,
+            np.concatenate([v + t * a, omega]),
+            np.concatenate([a, alpha]),
+        )
+
+    if kind == "function":
+        return Place(tasks.MovingFrame(lambda t: at(t - state.t)), p, R)
+    frame = tasks.MovingFrame(at(0.0))
+
+    def move(t: float) -> None:
+        now = at(t)
+        frame.set(now.position, now.orientation, now.twist, now.acceleration)
+
+    return Place(frame, p, R, move)
+
+
+def two_places(state: State, rng: Rng, kind: str | None = None) -> list[Place]:
+    """The robot's tip and another carrier, in either order."""
+    other = place(kind or str(rng.choice(CARRIERS)), state, rng)
+    F = state.frame(tip(state.robot))
+    places = [Place(tip(state.robot), F.p, F.R), other]
+    return places if rng.uniform() < 0.7 else places[::-1]
+
+
+def _a_point(place: Place, p: np.ndarray, n: np.ndarray):
+    del n
+    return tasks.Point(place.local(p), on=place.on)
+
+
+def _a_line(place: Place, p: np.ndarray, n: np.ndarray):
+    return tasks.Line(place.local(p), place.R.T @ n, on=place.on)
+
+
+def _a_plane(place: Place, p: np.ndarray, n: np.ndarray):
+    return tasks.Plane(place.local(p), place.R.T @ n, on=place.on)
+
+
+def _a_circle(place: Place, p: np.ndarray, n: np.ndarray):
+    return tasks.Circle(place.local(p), place.R.T @ n, 0.15, on=place.on)
+
+
+def _a_cylinder(place: Place, p: np.ndarray, n: np.ndarray):
+    return tasks.Cylinder(place.local(p), place.R.T @ n, 0.15, on=place.on)
+
+
+def _moving(task: Task, places: list[Place]) -> Subject:
+    return Subject(task, lambda t: [place.move(t) for place in places] and None)
+
+
+Make = Callable[..., Subject]
+
+
+def _point_on(kind: type[Task], feature: Callable, *more: float) -> Make:
+    """A point of the first carrier near a feature of the second."""
+
+    def make(state: State, rng: Rng, aligned: bool, on: str | None = None) -> Subject:
+        places = two_places(state, rng, on)
+        p, n = state.frame(tip(state.robot)).p, rng.normal(size=3)
+        away = np.zeros(3) if aligned else rng.uniform(-0.1, 0.1, 3)
+        point = _a_point(places[0], p + rng.uniform(-0.1, 0.1, 3), n)
+        return _moving(kind(point, feature(places[1], p + away, n), *more), places)
+
+    return make
+
+
+PAIRS = {
+    tasks.LineInPlane: (_a_line, _a_plane),
+    tasks.ParallelPlanes: (_a_plane, _a_plane),
+    tasks.PlaneOnPlane: (_a_plane, _a_plane),
+}
+
+
+def _lines(kind: type[Task], sensed: bool, *more: float) -> Make:
+    """Two features with directions; aligned, they lie along each other."""
+
+    def make(state: State, rng: Rng, aligned: bool, on: str | None = None) -> Subject:
+        places = two_places(state, rng, on)
+        p, n = state.frame(tip(state.robot)).p, rng.normal(size=3)
+        sense = str(rng.choice(["same", "opposite", "nearest"])) if sensed else "same"
+        first, second = PAIRS.get(kind, (_a_line, _a_line))
+        away = np.zeros(3) if aligned else rng.uniform(-0.1, 0.1, 3)
+        m = -n if sense == "opposite" else n
+        m = m if aligned else random_rotation(rng) @ n
+        options = {"sense": sense} if sensed else {}
+        a, b = first(places[0], p, n), second(places[1], p + away, m)
+        return _moving(kind(a, b, *more, **options), places)
+
+    return make
 
 
 def _speed(state: State, rng: Rng, aligned: bool) -> Subject:
@@ -223,22 +352,29 @@ CATALOGUE: dict[type[Task], Entry] = {
     tasks.FramePosition: Entry("exact", _position),
     tasks.FrameOrientation: Entry("near zero", _orientation),
     tasks.FramePose: Entry("near zero", _pose),
-    tasks.PointOnPoint: Entry(
-        "exact",
-        lambda s, g, z: Subject(tasks.PointOnPoint(tip(s.robot), _near(s, g, z))),
+    tasks.PointOnPoint: Entry("exact", _point_on(tasks.PointOnPoint, _a_point)),
+    tasks.PointOnLine: Entry("exact", _point_on(tasks.PointOnLine, _a_line)),
+    tasks.PointOnPlane: Entry("exact", _point_on(tasks.PointOnPlane, _a_plane)),
+    tasks.PointOnCircle: Entry("exact", _point_on(tasks.PointOnCircle, _a_circle)),
+    tasks.PointOnCylinder: Entry(
+        "exact", _point_on(tasks.PointOnCylinder, _a_cylinder)
     ),
-    tasks.PointOnLine: Entry(
-        "exact",
-        lambda s, g, z: Subject(tasks.PointOnLine(tip(s.robot), _line(s, g, z))),
+    tasks.DistanceToPoint: Entry(
+        "exact", _point_on(tasks.DistanceToPoint, _a_point, 0.2)
     ),
-    tasks.PointOnPlane: Entry(
-        "exact",
-        lambda s, g, z: Subject(
-            tasks.PointOnPlane(
-                tip(s.robot), tasks.Plane(_near(s, g, z), g.normal(size=3))
-            )
-        ),
+    tasks.DistanceToLine: Entry("exact", _point_on(tasks.DistanceToLine, _a_line, 0.2)),
+    tasks.DistanceToPlane: Entry(
+        "exact", _point_on(tasks.DistanceToPlane, _a_plane, -0.2)
     ),
+    tasks.PerpendicularLines: Entry("exact", _lines(tasks.PerpendicularLines, False)),
+    tasks.AngleBetweenLines: Entry(
+        "exact", _lines(tasks.AngleBetweenLines, False, 0.7)
+    ),
+    tasks.LineInPlane: Entry("exact", _lines(tasks.LineInPlane, False)),
+    tasks.LineOnLine: Entry("near zero", _lines(tasks.LineOnLine, True)),
+    tasks.ParallelLines: Entry("near zero", _lines(tasks.ParallelLines, True)),
+    tasks.ParallelPlanes: Entry("near zero", _lines(tasks.ParallelPlanes, True)),
+    tasks.PlaneOnPlane: Entry("near zero", _lines(tasks.PlaneOnPlane, True)),
     tasks.PointOnCurve: Entry(
         "exact",
         lambda s, g, z: Subject(tasks.PointOnCurve(tip(s.robot), curve_near(s, g))),

@@ -7,6 +7,8 @@ AGREEMENT = 1e-8
 # A certificate of a stack of equalities, and of one with inequalities everywhere.
 PROOF_OF_EQUALITIES = 1e-8
 PROOF_OF_INEQUALITIES = 1e-6
+# Of the compiled solver, on anything, levels scaled to unit norm.
+PROOF = 1e-8
 # What counts as disturbing a higher level, relative to its rows and targets.
 SOUND = 1e-9
 # Two laws, or a law and a closed form, on the same level; relative.
@@ -29,3 +31,5 @@ JOINT = 1e-9
 ROUND_OFF = 1e-12
 # An interpolated curve against its closed form: length and radius, relative.
 CURVE = 1e-7
+# A pose against a closed form, and the error of constraints that it holds [m, rad].
+POSE = 1e-7

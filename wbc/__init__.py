@@ -5,6 +5,7 @@ resolver (`NullSpace` projection, strict `HierarchicalQP`, or `WeightedQP`) turn
 into a `Solution`; a `Controller` does so once a tick.
 """
 
+from wbc.analysis import Analysis, Dependency, LevelAnalysis
 from wbc.certificate import Certificate
 from wbc.controller import Controller, resolve
 from wbc.damped import DampedInverse
@@ -23,6 +24,7 @@ from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
 from wbc.kernel import Kernel
 from wbc.law import PD, Damper, Law, SaturatedPD
 from wbc.nullspace import NullSpace
+from wbc.pose import PoseResult, TaskMiss, solve_pose
 from wbc.qp import backends
 from wbc.resolver import Resolver, Status
 from wbc.robot import Robot
@@ -35,11 +37,13 @@ from wbc.weighted import WeightedQP
 __all__ = [
     "PD",
     "ActiveBound",
+    "Analysis",
     "Blocker",
     "Certificate",
     "Controller",
     "DampedInverse",
     "Damper",
+    "Dependency",
     "Explanation",
     "FrameState",
     "HierarchicalQP",
@@ -49,9 +53,11 @@ __all__ = [
     "Kernel",
     "Law",
     "Level",
+    "LevelAnalysis",
     "ModelError",
     "MotionTask",
     "NullSpace",
+    "PoseResult",
     "Resolver",
     "Robot",
     "Rows",
@@ -63,6 +69,7 @@ __all__ = [
     "Status",
     "Task",
     "TaskExplanation",
+    "TaskMiss",
     "TaskReport",
     "UnknownName",
     "WbcError",
@@ -71,4 +78,5 @@ __all__ = [
     "backends",
     "resolve",
     "solve_hierarchy",
+    "solve_pose",
 ]

@@ -7,7 +7,13 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.compiled import compiled, inner
 
-__all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics"]
+__all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics", "measured"]
+
+
+@compiled
+def measured(q: Array, v: Array, t: float) -> bool:
+    """Whether no number of q (n,), v (n,) and t is NaN or infinite."""
+    return bool(finite(q) and finite(v) and np.isfinite(t))
 
 
 @compiled
@@ -19,7 +25,7 @@ def finite(x: Array) -> bool:
     return bool(good)
 
 
-@compiled
+@inner
 def assemble(
     raw: Array,
     bands: Array,

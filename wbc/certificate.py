@@ -22,10 +22,14 @@ from scipy.optimize import nnls
 
 from wbc.arrays import Array
 from wbc.cascade import LevelRows
-from wbc.linalg import RANK_TOLERANCE
 
 __all__ = ["Certificate", "LevelProof", "certify", "slack_of"]
 
+INDEPENDENT = 1e-13
+"""Rows above that keep more than this of their norm count as independent."""
+BEYOND = 1e-11
+"""A row this far beyond a bound, relative to its norm and |x|, is violated: its level
+pushes it already, so levels below may push or pull."""
 AT_BOUND = 1e-7
 """A row this close to a bound, relative to norm and size, may push back there."""
 
@@ -125,8 +129,10 @@ class _Above:
         norm = np.linalg.norm(A, axis=1)
         near = AT_BOUND * (norm * (1.0 + np.linalg.norm(x)) + np.abs(value))
         to_upper, to_lower = upper - value, value - lower
-        free = (lower == upper) | (to_upper < -near) | (to_lower < -near)
-        side = np.where(to_upper <= near, 1, np.where(to_lower <= near, -1, 0))
+        beyond = near * (BEYOND / AT_BOUND)
+        free = (lower == upper) | (to_upper < -beyond) | (to_lower < -beyond)
+        nearer = np.where(to_upper <= to_lower, 1, -1)
+        side = np.where(np.minimum(to_upper, to_lower) <= near, nearer, 0)
         distance = np.where(side > 0, to_upper, np.where(side < 0, to_lower, 0.0))
         return cls(A, free, np.where(free, 0, side), np.where(free, 0.0, distance))
 
@@ -163,7 +169,7 @@ def _multipliers(above: list[_Above], pull: Array) -> tuple[Array, Array]:
     if signed.size:
         flat[signed] = nnls(towards - Q @ (Q.T @ towards), target)[0] * side[signed]
     left = pull - unit.T @ flat
-    flat[free] = np.linalg.lstsq(unit[free].T, left, rcond=RANK_TOLERANCE)[0]
+    flat[free] = np.linalg.lstsq(unit[free].T, left, rcond=INDEPENDENT)[0]
     rest = pull - unit.T @ flat
     return flat / np.where(norm > 0.0, norm, 1.0), rest
 
@@ -173,4 +179,4 @@ def _range(rows: Array) -> Array:
     if rows.shape[0] == 0:
         return np.zeros((rows.shape[1], 0))
     _, sigma, Vt = np.linalg.svd(rows, full_matrices=False)
-    return Vt[sigma > RANK_TOLERANCE * max(1.0, float(sigma[0]))].T
+    return Vt[sigma > INDEPENDENT * max(1.0, float(sigma[0]))].T

@@ -13,17 +13,18 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numba
 
-__all__ = ["announce", "compiled", "inner"]
+__all__ = ["announce", "compiled", "inner", "python"]
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
 SETTINGS: Any = numba.config
+UNLITERAL: Any = numba.types.unliteral
 ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 """Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
 
@@ -61,31 +62,50 @@ CACHE: Final = _cache_folder()
 def compiled(function: Function) -> Function:
     """Compile a function at its first call, for the argument types of that call.
 
-    Kernels read the arrays that they loop over into local names first: each access
-    through a tuple of arrays counts references, in a loop again and again.
+    It may neither allocate nor return arrays, and calls only `inner` functions. Then
+    references to its arrays need no counting, which in small kernels is most of the
+    work. (Assigning an array to a slice of another allocates, in case they overlap.)
     """
-    return _compile(function)
+    return _compile(function, cache=CACHE is not None)
 
 
 def inner(function: Function) -> Function:
-    """Compile a function that only compiled ones call.
+    """Compile a function, under the same rules, that only compiled ones call.
 
-    Without the door for calls from Python, which for tuples of arrays is larger than
-    many a function behind it, compilation takes half as long.
+    It has no door for calls from Python, which for tuples of arrays is larger than
+    many a function behind it; what calls it keeps its code in the cache.
     """
-    return _compile(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    return _compile(
+        function, cache=False, no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )
+
+
+def python(function: Function) -> Function:
+    """The Python function behind a compiled one."""
+    return cast(Function, getattr(function, "py_func", function))
 
 
 def _compile(function: Function, **options: Any) -> Function:
     elsewhere = SETTINGS.CACHE_DIR
     SETTINGS.CACHE_DIR = elsewhere or str(CACHE or "")
     try:
-        compile_it: Any = numba.njit(
-            cache=CACHE is not None, fastmath=ALLOWED, error_model="numpy", **options
-        )
-        return cast(Function, compile_it(function))
+        njit: Any = numba.njit  # typed without the options that are not for everyone
+        compile_it = njit(fastmath=ALLOWED, error_model="numpy", _nrt=False, **options)
+        return cast(Function, _one_version(compile_it(function)))
     finally:
         SETTINGS.CACHE_DIR = elsewhere
+
+
+def _one_version(kernel: Any) -> Any:
+    """Let constants in a call count as numbers; numba compiles anew for each."""
+    find = kernel.get_call_template
+
+    def find_for_types(args: Any, kws: Mapping[str, Any]) -> Any:
+        named = {name: UNLITERAL(kind) for name, kind in kws.items()}
+        return find(tuple(UNLITERAL(kind) for kind in args), named)
+
+    kernel.get_call_template = find_for_types
+    return kernel
 
 
 def announce(kernel: Any, what: str) -> None:

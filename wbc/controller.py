@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import final
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, positive
-from wbc.assembly import finite
+from wbc.assembly import finite, measured
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP
@@ -96,14 +95,14 @@ class Controller:
         n = self.robot.nv
         if q.shape != (n,) or v.shape != (n,):
             raise InputError(f"q and v have shapes {q.shape}, {v.shape}; need ({n},).")
-        measured = self._no_wrench
+        forces, t = self._no_wrench, float(t)
         if wrenches:
-            measured = {k: _wrench(k, w) for k, w in wrenches.items()}
-        if not self._finite(q, v, t, measured):
+            forces = {k: _wrench(k, w) for k, w in wrenches.items()}
+        if not self._finite(q, v, t, forces):
             return self._hold(
                 q, v, Status.SENSOR_INVALID, "a measurement is not finite"
             )
-        return self._tick(q, v, float(t), measured)
+        return self._tick(q, v, t, forces)
 
     def _tick(
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
@@ -112,18 +111,17 @@ class Controller:
         self._last = q
         self._state.refresh(q, v, t, wrenches)
         try:
-            stack.update(self._state)
-            answer = self._solver.solve()
-            torque = stack.torque(answer.vdot)
+            answer = self._solver.tick(stack, self._state)
+            torque = answer.torque
+            if torque is None:
+                torque = stack.torque(answer.vdot)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
         return Solution(stack, torque, answer, answer.status)
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        if not (finite(q) and finite(v) and math.isfinite(t)):
-            return False
-        return all(finite(w) for w in wrenches.values())
+        return measured(q, v, t) and all(finite(w) for w in wrenches.values())
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
         """Gravity compensation and damping within the torque limits.

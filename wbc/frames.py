@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import compiled, inner
+from wbc.compiled import inner
 from wbc.pointers import address_of, floats_at
 
 __all__ = [
@@ -48,7 +48,7 @@ def frame_size(n: int) -> int:
     return 24 + 6 * n
 
 
-@compiled
+@inner
 def frame_at(flat: Array, n: int) -> FrameState:
     """The frame that lies in a flat array, as views."""
     return FrameState(
@@ -66,8 +66,8 @@ class Frames:
 
     Args:
         model: the Pinocchio model.
-        data: its Data; `crba`, `nonLinearEffects` and `computeJointJacobians` must
-            have run on it before the frames are updated.
+        data: its Data; `crba` in the world's axes and `nonLinearEffects` must have
+            run on it before the frames are updated.
         names: one a frame.
         indices: Pinocchio's index of each.
 

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import final
+from typing import TYPE_CHECKING, final
 
+from wbc.analysis import Analysis, Metric, analyse
 from wbc.arrays import positive
 from wbc.errors import InputError
+from wbc.linalg import RANK_TOLERANCE
 from wbc.task import Task
+
+if TYPE_CHECKING:
+    from wbc.state import State
 
 __all__ = ["Hierarchy", "Level"]
 
@@ -77,7 +82,8 @@ class Hierarchy:
         levels: each a task, or a level of several.
 
     Raises:
-        InputError: no level, something that is no task, or one task named twice.
+        InputError: no level, something that is no task, one task named twice, or two
+            that answer the same measured force.
     """
 
     __slots__ = ("levels",)
@@ -95,6 +101,7 @@ class Hierarchy:
                     "once, under a name of its own (name=...)."
                 )
             seen[task.name] = task
+        _refuse_shared_claims(self.tasks())
 
     @classmethod
     def of(cls, item: Task | Level | Hierarchy) -> Hierarchy:
@@ -104,6 +111,19 @@ class Hierarchy:
     def tasks(self) -> Iterator[Task]:
         """All tasks, from the top."""
         return (task for level in self.levels for task, _ in level.terms)
+
+    def analyse(
+        self,
+        state: State,
+        *,
+        metric: Metric = "kinetic",
+        tolerance: float = RANK_TOLERANCE,
+    ) -> Analysis:
+        """Rank, freedom, redundant and conflicting rows of every level at a state.
+
+        Arguments and errors as for `wbc.analysis.analyse`; print the result.
+        """
+        return analyse(self, state, metric, tolerance)
 
     def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
         return Hierarchy(*self.levels, *Hierarchy.of(other).levels)
@@ -119,3 +139,17 @@ class Hierarchy:
 
     def __repr__(self) -> str:
         return " >> ".join(f"({level!r})" for level in self.levels)
+
+
+def _refuse_shared_claims(tasks: Iterator[Task]) -> None:
+    """A measured force goes into the torques once, or the robot would push twice."""
+    claimed: dict[str, str] = {}
+    for task in tasks:
+        for claim in task.claims:
+            if claim in claimed:
+                raise InputError(
+                    f"tasks '{claimed[claim]}' and '{task.name}' both answer the "
+                    f"{claim}: it would count twice. Give one of them another sensor, "
+                    "or join their rows in one task."
+                )
+            claimed[claim] = task.name

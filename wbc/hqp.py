@@ -17,6 +17,7 @@ from wbc.lexicographic import Lexicographic
 from wbc.qp import DEFAULT_BACKEND, QpBackend
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
+from wbc.state import State
 
 __all__ = ["HierarchicalQP", "HierarchyResult", "solve_hierarchy"]
 
@@ -56,6 +57,19 @@ class _Compiled(Solver):
     def __init__(self, stack: Stack) -> None:
         sizes = [where.stop - where.start for where in stack.levels]
         self._stack, self._solver = stack, Lexicographic(sizes, stack.robot.nv)
+        stack.connect(self._solver.floats, self._solver.integers)
+
+    def tick(self, stack: Stack, state: State) -> Answer:
+        """The same in one compiled call."""
+        found, done = stack.resolve(state)
+        n, m = stack.robot.nv, stack.lower.size
+        return Answer(
+            found[n : 2 * n],
+            found[2 * n + m :],
+            Status.SOLVED if done else Status.INCOMPLETE,
+            found[2 * n : 2 * n + m],
+            found[:n],
+        )
 
     def solve(self) -> Answer:
         """Resolve the present rows."""

@@ -10,9 +10,11 @@ import numpy as np
 
 from wbc.arrays import Array
 
-__all__ = ["NO_TABLE", "Kernel"]
+__all__ = ["NO_TABLE", "WORLD", "Kernel"]
 
 NO_TABLE = np.zeros(1)
+WORLD = "universe"
+"""Pinocchio's name of the frame that does not move."""
 
 
 @final
@@ -21,18 +23,21 @@ class Kernel:
     """How to compute a task's rows without Python.
 
     Attributes:
-        evaluator: compiled function that runs the kernels of a whole catalogue; its
-            arguments are those of `tasks.evaluator.evaluate`.
+        runner: compiled function that writes the rows of all tasks of a catalogue and
+            then calls `wbc.tick.conclude`; arguments as `wbc.tick.without_kernels`.
         code: which kernel of that catalogue.
         parameters: numbers that the kernel reads at every tick; the task may change
             them in place, as a moving target does.
         table: more of them, such as the pieces of a curve.
         stiffness, damping: (m,) of a PD law; None for rows that are bounds.
+        moving: (26,) a frame that moves by itself, for `wbc.relative.moved`; it takes
+            the place of the world among the task's two frames.
     """
 
-    evaluator: Callable[..., Any]
+    runner: Callable[..., Any]
     code: int
     parameters: Array
     table: Array = field(default_factory=lambda: NO_TABLE)
     stiffness: Array | None = None
     damping: Array | None = None
+    moving: Array | None = None

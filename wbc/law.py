@@ -72,8 +72,9 @@ class Damper(Law):
 class SaturatedPD(Law):
     """A PD that approaches from afar at a bounded speed (Khatib 1987; P4 sec. III-B).
 
-    The wanted velocity -(kp / kd) e is shortened to `speed`, and the acceleration to
-    `acceleration`, both as vectors: the way stays straight.
+    The wanted velocity -(kp / kd) e is shortened to `speed`, and to what half of
+    `acceleration` can stop in time; the acceleration is shortened too. All are
+    shortened as vectors, so the way stays straight.
 
     Args:
         stiffness: kp [1/s^2]; damping is critical, kd = 2 sqrt(kp).
@@ -92,7 +93,9 @@ class SaturatedPD(Law):
 
     def acceleration(self, error: Array, rate: Array) -> Array:
         """-kd (de/dt - v_d), v_d = -(kp / kd) e, both shortened."""
-        wanted = _shortened(-self.stiffness / self.damping * error, self.speed)
+        stoppable = np.sqrt(self.largest * np.linalg.norm(error))
+        speed = min(self.speed, float(stoppable))
+        wanted = _shortened(-self.stiffness / self.damping * error, speed)
         return _shortened(self.damping * (wanted - rate), self.largest)
 
     def __repr__(self) -> str:

@@ -8,50 +8,66 @@ from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
+from numba.np import arrayobj
 
-from wbc.arrays import Array
-from wbc.compiled import inner
+from wbc.arrays import Array, IntArray
 from wbc.errors import InputError
 
-__all__ = ["address_of", "floats_at"]
+__all__ = ["address_of", "floats_at", "integers_at"]
+
+WORD = 8
+
+_types: Any = types  # numba has no annotations
+_arrays: Any = arrayobj
+_tools: Any = cgutils
 
 
-_float64: Any = types.float64
-_pointer_type: Any = types.CPointer  # numba has no annotations
-_view: Any = numba.carray  # type: ignore[attr-defined] # nor a list of its exports
+def _view_of(kind: Any) -> Any:
+    """An intrinsic: the numbers of this kind at an address, as an array."""
+
+    def type_it(typing_context: Any, address: Any, count: Any) -> Any:
+        del typing_context, address, count
+        vector = _types.Array(kind, 1, "C")
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            del signature
+            address, count = arguments
+            array = context.make_array(vector)(context, builder)
+            word = context.get_constant(_types.intp, WORD)
+            _arrays.populate_array(
+                array,
+                data=builder.inttoptr(address, array.data.type),
+                shape=_tools.pack_array(builder, [count]),
+                strides=_tools.pack_array(builder, [word]),
+                itemsize=word,
+                meminfo=None,
+            )
+            return array._getvalue()
+
+        return vector(_types.intp, _types.intp), generate
+
+    return intrinsic(type_it)
 
 
-@intrinsic
-def _as_pointer(typing_context: Any, address: Any) -> Any:
-    """The address as a pointer to float64."""
-    del typing_context, address
+floats_at: Any = _view_of(_types.float64)
+"""(address, count) -> the float64 numbers (count,) there; nothing is copied.
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        target = context.get_value_type(signature.return_type)
-        return builder.inttoptr(arguments[0], target)
-
-    return _pointer_type(_float64)(types.int64), generate
+The array owns nothing, and a compiled function must not return it.
+"""
+integers_at: Any = _view_of(_types.intp)
+"""The same for integers."""
 
 
-_pointer: Any = _as_pointer
-
-
-@inner
-def floats_at(address: int, count: int) -> Array:
-    """The float64 numbers (count,) that start at an address; nothing is copied."""
-    return _view(_pointer(address), (count,))  # type: ignore[no-any-return]
-
-
-def address_of(view: Array) -> int:
+def address_of(view: Array | IntArray) -> int:
     """Where an array begins; whoever takes the address must keep the array alive.
 
     Raises:
-        InputError: not float64, or not contiguous.
+        InputError: neither float64 nor integers, or not contiguous.
     """
-    if view.dtype != np.float64 or not view.flags.forc:
-        raise InputError("a kernel reads contiguous arrays of float64 only.")
+    if view.dtype not in (np.float64, np.intp) or not view.flags.forc:
+        raise InputError("a kernel reads contiguous arrays of float64 or intp only.")
     return int(view.ctypes.data)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from wbc.arrays import Array, IntArray
 from wbc.stack import Stack
+from wbc.state import State
 
 __all__ = ["Answer", "Resolver", "Solver", "Status"]
 
@@ -25,8 +26,7 @@ class Status(Enum):
     SOLVER_FAILED = "the resolver failed: held by gravity and damping"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Answer:
+class Answer(NamedTuple):
     """What a resolver found.
 
     Attributes:
@@ -35,12 +35,14 @@ class Answer:
         status: SOLVED or INCOMPLETE.
         slacks: (m,) weighted slack of every row when its own level was solved, or
             None where the resolver does not tell.
+        torque: (n,) joint torques, or None where the resolver leaves them to others.
     """
 
     vdot: Array
-    ranks: IntArray
+    ranks: Array | IntArray
     status: Status
     slacks: Array | None = None
+    torque: Array | None = None
 
 
 class Solver(ABC):
@@ -53,6 +55,15 @@ class Solver(ABC):
         Raises:
             SolverError: no solution was found.
         """
+
+    def tick(self, stack: Stack, state: State) -> Answer:
+        """Rewrite the stack's rows at this state, and resolve them.
+
+        Raises:
+            ModelError, SolverError: as for `Stack.update` and `solve`.
+        """
+        stack.update(state)
+        return self.solve()
 
 
 class Resolver(ABC):

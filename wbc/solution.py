@@ -75,7 +75,7 @@ class Solution:
     ) -> None:
         self._stack, self._tick = stack, stack.tick
         self.torque, self.status, self.message = torque, status, message
-        self._ranks: IntArray | None = None
+        self._ranks: Array | IntArray | None = None
         self._slacks: Array | None = None
         if answer is None:
             self.acceleration = np.full(torque.size, np.nan)
@@ -94,7 +94,7 @@ class Solution:
 
         Empty after a fallback.
         """
-        return () if self._ranks is None else tuple(self._ranks.tolist())
+        return () if self._ranks is None else tuple(int(rank) for rank in self._ranks)
 
     @property
     def lost(self) -> tuple[int, ...]:

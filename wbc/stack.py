@@ -6,18 +6,23 @@ from typing import NoReturn, final
 
 import numpy as np
 
-from wbc.arrays import Array
-from wbc.assembly import assemble, back_substitute, inverse_dynamics
-from wbc.errors import ModelError, SolverError
+from wbc import slots
+from wbc.arrays import Array, IntArray
+from wbc.assembly import back_substitute, inverse_dynamics
+from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.kernel import Kernel
+from wbc.pointers import address_of
+from wbc.program import Place, Program
 from wbc.robot import Robot
 from wbc.rows import Rows, rows_over
-from wbc.rowswriter import Place, RowsWriter
 from wbc.state import State
 from wbc.task import Task
+from wbc.tick import without_kernels
 
 __all__ = ["Stack", "Term"]
+
+ROWS_ONLY = np.empty(0)
 
 
 @final
@@ -91,13 +96,11 @@ class Stack:
                 m = term.where.stop
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
+        self._answer_size = 2 * robot.nv + m + len(self.levels)
         self._python = [term for term in self.terms if term.kernel is None]
-        self._advancing = [
-            term.task
-            for term in self.terms
-            if type(term.task).advance is not Task.advance
-        ]
-        self._writer: RowsWriter | None = None
+        everyone = [term.task for term in self.terms]
+        self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
+        self._program: Program | None = None
         self._state: State | None = None
         self.tick = 0
 
@@ -117,6 +120,15 @@ class Stack:
             term.rows = rows_over(self.raw[where], self.bands[:, where])
             self.weights[where] = term.weight
             self._torque[where] = term.task.space == "torque"
+        self._table = np.zeros(slots.SIZE, np.int_)
+        self._table[[slots.JOINTS, slots.ROWS]] = n, m
+        self._table[slots.RAW : slots.TORQUE + 1] = [
+            address_of(array)
+            for array in (self.raw, self.bands, self.weights, self._torque)
+        ]
+        self._table[slots.VDOT_ROWS : slots.L_INV + 1] = [
+            address_of(array) for array in (self.A, self.Ay, self._bounds, self.L_inv)
+        ]
 
     def update(self, state: State) -> None:
         """Rewrite all rows at this state.
@@ -125,33 +137,49 @@ class Stack:
             ModelError: the inertia matrix is not positive definite.
             SolverError: a task wrote a row that is not finite.
         """
+        outcome = self._run(state, ROWS_ONLY)
+        if outcome != slots.SOLVED:
+            self._complain(outcome)
+
+    def connect(self, floats: Array, integers: IntArray) -> None:
+        """Let `resolve` use this memory of a compiled solver, which must stay alive."""
+        self._solver = floats, integers
+        self._table[slots.FLOATS :] = [
+            address_of(floats),
+            floats.size,
+            address_of(integers),
+            integers.size,
+        ]
+
+    def resolve(self, state: State) -> tuple[Array, bool]:
+        """Rewrite all rows and solve them with the connected solver, in one call.
+
+        Returns:
+            (2 n + m + p,) torques, accelerations, slacks and ranks of the levels; and
+            whether the solver came to an end.
+
+        Raises:
+            ModelError, SolverError: as for `update`, or a torque is not finite.
+        """
+        out = np.empty(self._answer_size)
+        outcome = self._run(state, out)
+        if outcome not in (slots.SOLVED, slots.UNSOLVED):
+            self._complain(outcome)
+        return out, outcome == slots.SOLVED
+
+    def _run(self, state: State, out: Array) -> int:
         if state is not self._state:
             self._bind(state)
         self.tick += 1
-        if self._writer is not None:
-            self._writer.write(self.raw, self.bands)
         for term in self._python:
             term.task.update(state, term.rows)
         if self._advancing:
             self._advance(state)
-        outcome = assemble(
-            self.raw,
-            self.bands,
-            self.weights,
-            self._torque,
-            self._M,
-            self.h,
-            self.A,
-            self.Ay,
-            self._bounds,
-            self.L_inv,
-        )
-        if outcome != -1:
-            self._complain(outcome)
+        return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
 
     def _advance(self, state: State) -> None:
         """Let tasks with a memory move on, and add their contact torques to h."""
-        self.h = np.zeros(state.h.size)
+        self.h[:] = 0.0
         for task in self._advancing:
             task.advance(state, self.h)
         self.h += state.h
@@ -165,11 +193,14 @@ class Stack:
                     f"task '{term.task.name}' wrote a row '{row}' that is not finite.",
                     term.level,
                 )
+        if outcome == slots.NOT_FINITE:
+            raise SolverError("a torque is not finite.")
         raise ModelError("the inertia matrix is not positive definite.")
 
     def _bind(self, state: State) -> None:
         """Read from another State's memory from now on."""
-        self._state, self.M, self.h = state, state.M, state.h
+        self._state, self.M = state, state.M
+        self.h = np.zeros(state.h.size) if self._advancing else state.h
         self._M = state.M.T  # symmetric, and stored by rows as kernels want it
         places = [
             Place(
@@ -177,12 +208,17 @@ class Stack:
                 next(iter(term.task.frames), None),
                 term.where.start,
                 term.where.stop,
+                next(iter(term.task.frames[1:]), None),
             )
             for term in self.terms
             if term.kernel is not None
         ]
+        table, self._runner = self._table, without_kernels
+        table[slots.INERTIA : slots.BIAS + 1] = address_of(state.M), address_of(self.h)
         if places:
-            self._writer = RowsWriter(places, state, self.lower.size)
+            self._program = Program(places, state, self.lower.size)
+            self._program.enter(table)
+            self._runner = self._program.runner
 
     def acceleration(self, y: Array) -> Array:
         """Vdot = L^-T y, (n,)."""
@@ -200,3 +236,14 @@ class Stack:
         if not inverse_dynamics(self._M, self.h, vdot, tau):
             raise SolverError("a torque is not finite.")
         return tau
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse copies and pickles, whose addresses would point elsewhere.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError(
+            "a controller reads Pinocchio's memory where it lies, so it cannot be "
+            "copied or pickled: make another one from the same robot and hierarchy."
+        )

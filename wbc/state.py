@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["State"]
 
 WORLD_ALIGNED = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+IN_WORLD = pin.Convention.WORLD
 NO_WRENCHES: Mapping[str, Array] = {}
 
 
@@ -34,7 +35,7 @@ class State:
         M: (n, n) joint-space inertia.
         h: (n,) Coriolis, centrifugal and gravity torques: M vdot + h = tau.
         wrenches: sensor name -> (6,) wrench of the robot ON the environment,
-            [force; moment], world axes [N, Nm].
+            [force; moment], world axes, at the sensor [N, Nm].
         data: Pinocchio's Data behind all this; do not write to it.
     """
 
@@ -60,9 +61,8 @@ class State:
         """
         model, data = self.robot.model, self.data
         self.q, self.v, self.t, self.wrenches = q, v, t, wrenches
-        pin.crba(model, data, q)
+        pin.crba(model, data, q, IN_WORLD)  # also computes the joints' Jacobian
         pin.nonLinearEffects(model, data, q, v)
-        pin.computeJointJacobians(model, data, q)
         self._frames.clear()
         self._moved = False
 

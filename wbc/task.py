@@ -32,6 +32,8 @@ class Task(ABC):
     """
 
     space: Space = "acceleration"
+    claims: tuple[str, ...] = ()
+    """Measured forces that `advance` puts into the torques; no two tasks may share."""
     __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
@@ -62,6 +64,26 @@ class Task(ABC):
         """
         for frame in self.frames:
             robot.frame_id(frame)
+
+    def row_units(self, rows: int) -> tuple[str, ...]:
+        """Unit of the error of each of so many rows.
+
+        A `unit` of several parts, "m, rad", is shared out in equal blocks.
+        """
+        parts = [part.strip() for part in self.unit.split(",")]
+        if rows % len(parts):
+            return (self.unit,) * rows
+        return tuple(part for part in parts for _ in range(rows // len(parts)))
+
+    def wish_units(self, rows: int) -> tuple[str, ...]:
+        """Unit of the bounds of each row: torques as they are, errors per s^2."""
+        units = self.row_units(rows)
+        if self.space == "torque":
+            return units
+        return tuple(
+            ", ".join(_per_second_squared(part.strip()) for part in unit.split(","))
+            for unit in units
+        )
 
     def kernel(self, robot: Robot) -> Kernel | None:
         """The task's compiled half for this robot; None for plain Python."""
@@ -149,3 +171,9 @@ class MotionTask(Task):
         rows.rate[:] += rows.A @ state.v
         rows.upper[:] = self.law.acceleration(rows.error, rows.rate) - rows.drift
         rows.lower[:] = rows.upper
+
+
+def _per_second_squared(unit: str) -> str:
+    if unit in ("", "-") or unit.endswith("/s^2"):
+        return unit.strip("-")
+    return f"{unit}^2" if unit.endswith("/s") else f"{unit}/s^2"

@@ -16,8 +16,10 @@ LOOK = 0.2
 """Time over which it is averaged [s]."""
 TURN = 1.0
 """Time of a turn towards it [s]."""
-ALIGNED = 2e-3
+ALIGNED = 4e-3
 """Between force and probe: then only the normal force is left [rad]."""
+TURNS = 4
+"""At most so many: friction that sticks would bend the force again and again."""
 SLIDE, LENGTH = 5.0, 0.202
 """The slide takes so long [s] and goes so far [m]."""
 
@@ -35,7 +37,7 @@ class Follower:
     def __init__(self, task: HybridForceMotion, axis: AxisAlignment) -> None:
         self.task, self.axis = task, axis
         self.found = self.slid = np.nan
-        self._since = 0.0
+        self._since, self._turns = 0.0, 0
         self._sum = np.zeros(3)
         self._direction, self._next = DOWN, DOWN
 
@@ -60,8 +62,10 @@ class Follower:
         self._sum[:] = 0.0
         self._begin = self.task.position
         self.task.set_target(self._begin)
-        if np.linalg.norm(self._next - self._direction) < ALIGNED:
+        aligned = np.linalg.norm(self._next - self._direction) < ALIGNED
+        if aligned or self._turns == TURNS:
             self.slid = t
+        self._turns += 1
 
     def _turn(self, t: float, since: float) -> None:
         """From the old direction to the new one, task axes and probe alike."""

@@ -46,7 +46,8 @@ def scene(robot: Robot) -> mujoco.MjSpec:
     """The arm in front of the plate; ball and plate are the only pair that collides.
 
     The contact is a soft one with an elliptic cone and soft friction: with the usual
-    ones a sliding ball loses contact every few steps.
+    ones a sliding ball loses contact every few steps, whatever the controller does.
+    The price: below some mm/s, friction is viscous rather than dry.
     """
     spec = mujoco.MjSpec.from_string(robot.mjcf)
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC

@@ -55,7 +55,7 @@ def run_job(
     ]
     record, bar, spent = Record(cell, job, ticks), Bar("cutting", ticks, quiet), 0.0
     for tick in range(ticks):
-        began = time.perf_counter()
+        began = time.process_time()
         goes_on = job.tick(cell.data.time)
         solutions: list[Solution] = []
         times: list[float] = []
@@ -65,15 +65,15 @@ def run_job(
             solutions.append(controller(view.q, view.v, view.t, view.wrenches))
             times.append(time.perf_counter() - before)
         cell.apply([solution.torque for solution in solutions])
-        spent += time.perf_counter() - began
+        spent += time.process_time() - began
         record.take()
-        began = time.perf_counter()
+        began = time.process_time()
         for log, view, solution, taken in zip(
             logs, seen, solutions, times, strict=True
         ):
             log.record(tick, view, solution, taken)
         cell.step()
-        spent += time.perf_counter() - began
+        spent += time.process_time() - began
         if tick % CERTIFY_EVERY == 0:
             _certify(logs, controllers, solutions)
         if watch is not None and not watch(cell, solutions[0]):

@@ -220,7 +220,7 @@ def along_path(
     )  # fmt: skip
     direction(path.point, p[9], p[10], d)
     in_world(p, F, B)
-    turn_to(B, d[:3], scratch[66:69], out)
+    turn_to(B, d[:3], scratch[66:69], out, 0)
     cross_into(d[:3], d[3:6], turn)
     cross_into(d[:3], d[6:9], bent)
     for i in range(3):

@@ -9,7 +9,15 @@ from wbc.compiled import inner
 from wbc.frames import FrameState, cross_into
 from wbc.rows import Rows
 
-__all__ = ["along", "orientation", "pose", "rotation_between", "rotation_vector"]
+__all__ = [
+    "along",
+    "in_world",
+    "orientation",
+    "pose",
+    "rotation_between",
+    "rotation_vector",
+    "turn_to",
+]
 
 
 @inner
@@ -87,7 +95,7 @@ def along(p: Array, F: FrameState, scratch: Array, out: Rows) -> None:
     """
     B, swept = scratch[:9], scratch[9:12]
     in_world(p, F, B)
-    turn_to(B, p[9:12], scratch[12:15], out)
+    turn_to(B, p[9:12], scratch[12:15], out, 0)
     cross_into(F.V[3:6], p[12:15], swept)
     J, J_F = out.A, F.J
     for i in range(2):
@@ -111,12 +119,12 @@ def in_world(triad: Array, F: FrameState, B: Array) -> None:
 
 
 @inner
-def turn_to(B: Array, n: Array, e: Array, out: Rows) -> None:
+def turn_to(B: Array, n: Array, e: Array, out: Rows, first: int) -> None:
     """Errors of the axis B[:3] against n on the two directions across it."""
     rotation_between(B[:3], n, B[3:6], e)
     for i in range(2):
         b = B[3 + 3 * i : 6 + 3 * i]
-        out.error[i] = -(b[0] * e[0] + b[1] * e[1] + b[2] * e[2])
+        out.error[first + i] = -(b[0] * e[0] + b[1] * e[1] + b[2] * e[2])
 
 
 @inner

@@ -129,6 +129,35 @@ def test_before_contact_nothing_leaks_into_the_directions_of_motion(resolver):
     assert_allclose(rows.A @ vdot, rows.lower, atol=SAME)
 
 
+@every_law
+def test_a_rigid_joint_feels_forces_and_moments_of_a_six_row_task(resolver):
+    """Pressing flat: one force and two moments at once, the other rows move."""
+    rng = np.random.default_rng(12)
+    R, wanted = random_rotation(rng), np.array([0.0, 0.0, 20.0, 0.5, -0.3, 0.0])
+    pressed = [2, 3, 4]
+    q = ARM.q_home + rng.uniform(-0.2, 0.2, ARM.nv)
+    F = ARM.state(q).frame(TIP)
+    task = HybridForceMotion(
+        TIP,
+        F.p,
+        wanted,
+        (0, 0, 1, 1, 1, 0),
+        orientation=F.R,
+        axes=R,
+        law=FEED_FORWARD,
+        sensor_frame=TIP,
+    )
+    measured = np.kron(np.eye(2), R) @ np.array([0.0, 0.0, 7.0, -0.2, 0.4, 0.0])
+    state = ARM.state(q, wrenches={"wrist": measured})
+    touching(task, state)
+    below = Posture(q + rng.uniform(-0.2, 0.2, ARM.nv), stiffness=20.0)
+    torque, _ = solve(state, task >> below, resolver())
+    J = (np.kron(np.eye(2), R.T) @ F.J)[pressed]
+    column = np.linalg.solve(state.M, J.T)
+    free = np.linalg.solve(state.M, torque - state.h)
+    assert_allclose(np.linalg.solve(J @ column, J @ free), wanted[pressed], atol=SAME)
+
+
 def feel(task, gain: float, ticks: int) -> float:
     """Force on a rigid surface, felt a tick late, if the plant delivers a share."""
     rng = np.random.default_rng(3)

@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.tolerances import PROOF
 from wbc.certificate import certify
 from wbc.lexicographic import Lexicographic
 
-PROOF = 1e-8
-PROBLEMS = 1000
-KINDS = ("plain", "redundant", "conflict", "zero", "rank one", "free")
+PROBLEMS = 2500  # for each of four scales
+KINDS = (
+    "plain", "redundant", "conflict", "zero", "rank one", "free", "nearly singular",
+    "uneven rows",
+)  # fmt: skip
+NEARLY = (1e-6, 1e-3)
+"""Singular values next to 1 of a level that is nearly singular."""
 
 Levels = list[tuple[np.ndarray, np.ndarray, np.ndarray]]
 
@@ -27,6 +32,12 @@ def level(rng: np.random.Generator, n: int, above: Levels) -> tuple:
         A[0] = 0.0
     elif kind == "rank one":
         A = rng.normal(size=(m, 1)) * rng.normal(size=n)
+    elif kind == "nearly singular":
+        U, sigma, Vt = np.linalg.svd(A, full_matrices=False)
+        sigma[-1] = sigma[0] * 10.0 ** rng.uniform(*np.log10(NEARLY))
+        A = (U * sigma) @ Vt
+    elif kind == "uneven rows":
+        A *= 10.0 ** rng.uniform(-2.0, 2.0, (m, 1))
     b = 3.0 * rng.normal(size=m)
     sides = rng.choice(["equal", "both", "lower", "upper"], m)
     lower = np.where(sides == "upper", -np.inf, b)
@@ -62,24 +73,25 @@ def solver_for(levels: Levels) -> Lexicographic:
     return Lexicographic([low.size for _, low, _ in levels], levels[0][0].shape[1])
 
 
-def unit(levels: Levels) -> Levels:
-    """The same levels, each of unit norm: the scale in which a proof is judged."""
+def proof(levels: Levels, x: np.ndarray) -> float:
+    """Worst residual in scaled units: levels of unit norm, x of unit norm if larger."""
     sizes = [np.linalg.norm(A) or 1.0 for A, _, _ in levels]
-    return [
-        (A / f, low / f, high / f)
+    length = max(1.0, float(np.linalg.norm(x)))
+    scaled = [
+        (A / f, low / (f * length), high / (f * length))
         for f, (A, low, high) in zip(sizes, levels, strict=True)
     ]
+    return certify(scaled, x / length).worst
 
 
-@pytest.mark.parametrize("scale", [0.0, 3.0, 6.0])
+@pytest.mark.parametrize("scale", [0.0, 1.0, 3.0, 6.0])
 def test_every_solution_proves_itself(scale):
     worst = (0.0, -1)
     for seed in range(PROBLEMS):
         levels = problem(seed, scale)
         solver = solver_for(levels)
         assert solver.solve(*stacked(levels)), f"seed {seed} was not solved"
-        proof = certify(unit(levels), solver.x.copy()).worst
-        worst = max(worst, (proof, seed))
+        worst = max(worst, (proof(levels, solver.x.copy()), seed))
     assert worst[0] <= PROOF, f"seed {worst[1]}: {worst[0]:.1e}"
 
 
@@ -126,7 +138,7 @@ def test_a_row_of_zeros_keeps_its_slack():
 
 def test_too_few_iterations_are_admitted():
     levels = problem(1)
-    solver = solver_for(levels)
-    solver._most = 1
+    sizes, n = [low.size for _, low, _ in levels], levels[0][0].shape[1]
+    solver = Lexicographic(sizes, n, most=1)
     assert not solver.solve(*stacked(levels))
     assert np.isfinite(solver.x).all()

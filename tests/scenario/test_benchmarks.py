@@ -10,13 +10,16 @@ import numpy as np
 import pytest
 
 from benchmarks.arm import arms_urdf
+from benchmarks.endurance import drifting_ticks, endure, welding_ticks
 from benchmarks.problems import arm_motion, random_problems, smooth_motion
 from benchmarks.solvers import Daqp, Native
 from benchmarks.tables import table
 from sims.resolvers import resolver_names
+from tests.tolerances import PROOF
 from wbc import Robot, solve_hierarchy
 
 ROOT = Path(__file__).parents[2]
+GROWTH_MB = 8.0
 
 
 def run(*arguments):
@@ -34,7 +37,7 @@ def test_quick_run_without_peers_prints_every_section():
     assert done.returncode == 0, done.stderr
     titles = [line[4:] for line in done.stdout.splitlines() if line.startswith("### ")]
     starts = ("Solver alone", "Solver along", "Tick: one arm", "Tick: welding")
-    starts += ("Breakdown", "Growth", "Start")
+    starts += ("Breakdown", "Growth", "Start", "Endurance")
     assert all(any(t.startswith(start) for t in titles) for start in starts)
     assert "processor: " in done.stdout
     untold = {"nullspace:tsid", "nullspace:uf"}
@@ -42,6 +45,15 @@ def test_quick_run_without_peers_prints_every_section():
     assert all(f"| wbc {name} " in done.stdout for name in names)
     assert "failed at tick" not in done.stdout
     assert str(ROOT) not in done.stdout
+
+
+@pytest.mark.parametrize("ticks_of", [welding_ticks, drifting_ticks])
+def test_thousands_of_warm_ticks_neither_fail_nor_grow(ticks_of):
+    found = endure(ticks_of(8000), 8000)
+    assert found.ticks == 8000
+    assert found.failures == 0
+    assert found.worst <= PROOF
+    assert found.late_mb - found.early_mb < GROWTH_MB
 
 
 @pytest.mark.parametrize(

@@ -436,7 +436,7 @@ def test_a_controller_cannot_be_copied_because_it_reads_memory_in_place(duplicat
     control = Controller(robot, Posture())
     control(robot.q_home, np.zeros(robot.nv))
     with pytest.raises(InputError, match="make another one"):
-        duplicate(control._stack._writer)
+        duplicate(control._stack)
 
 
 def test_a_task_keeps_following_its_target_in_two_controllers_at_once():

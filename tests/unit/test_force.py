@@ -94,6 +94,19 @@ def test_what_is_not_finite_is_neither_sent_nor_remembered():
     assert_array_equal(kept, [3.0])
 
 
+def test_a_sensor_that_falls_silent_makes_the_controller_hold_the_robot():
+    task = press()
+    controller = Controller(ARM, task >> Damping())
+    controller(HOME, REST, wrenches=felt(15.0))
+    before = held(task)
+    solution = controller(HOME, REST)
+    assert solution.status is Status.SOLVER_FAILED
+    assert "fell silent" in solution.message
+    assert np.isfinite(solution.torque).all()
+    assert held(task) == before
+    assert controller(HOME, REST, wrenches=felt(15.0)).ok
+
+
 def test_contact_begins_at_the_threshold_and_ends_after_a_while_below_half_of_it():
     task = press(threshold=2.0)
     controller = Controller(ARM, task >> Damping())
@@ -171,6 +184,33 @@ def test_what_cannot_be_used_is_refused_by_name(make, word):
         make()
 
 
+def test_no_two_tasks_answer_the_same_measured_force():
+    soft = Impedance(TIP, P, sensor_frame=TIP)
+    with pytest.raises(InputError, match=r"'tip hybrid' and 'tip impedance' both"):
+        press() >> soft
+    assert len(press(sensor="ankle") >> soft >> Damping()) == 3
+    moments = HybridForceMotion(
+        TIP,
+        P,
+        np.zeros(6),
+        (0, 0, 0, 1, 1, 0),
+        orientation=np.eye(3),
+        name="moments",
+    )
+    assert len(press() >> moments) == 2
+
+
+def test_units_of_rows_that_move_and_rows_that_press():
+    task = press(selection=(0, 0, 1))
+    assert task.row_units(3) == ("m", "m", "N")
+    assert task.wish_units(3) == ("m/s^2",) * 3
+    six = HybridForceMotion(
+        TIP, P, np.zeros(6), (1, 0, 0, 0, 1, 0), orientation=np.eye(3)
+    )
+    assert six.row_units(6) == ("N", "m", "m", "rad", "Nm", "rad")
+    assert six.wish_units(6) == ("m/s^2",) * 3 + ("rad/s^2",) * 3
+
+
 def test_a_refused_target_leaves_the_old_one():
     task = press()
     for change in (
@@ -200,6 +240,19 @@ def test_a_saturated_pd_is_a_pd_up_close_and_bounded_and_straight_from_afar():
     start = law.acceleration(far, np.zeros(3))
     assert_allclose(start, -3.0 * far / 5.0)
     assert_allclose(law.acceleration(far, -0.2 * far / 5.0), 0.0, atol=ROUND_OFF)
+
+
+def test_a_saturated_pd_arrives_without_running_past():
+    law, e, v = SaturatedPD(10000.0, 0.2, 1.0), np.array([0.15]), np.zeros(1)
+    way = []
+    for _ in range(3000):
+        v = v + 1e-3 * law.acceleration(e, v)
+        e = e + 1e-3 * v
+        way.append([e[0], abs(v[0])])
+    errors, speeds = np.array(way).T
+    assert errors.min() > -1e-5
+    assert speeds.max() < 0.2 + ROUND_OFF
+    assert abs(errors[-1]) < 1e-9
 
 
 def test_locking_holds_a_joint_in_its_zone_though_the_task_below_would_free_it():

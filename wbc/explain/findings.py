@@ -48,7 +48,7 @@ def _task(tick: Tick, term: Term, level: Response, proof: float) -> TaskExplanat
     wanted = np.clip(value, raw.lower, raw.upper)
     missed = tick.missed[where]
     met = not missed.any()
-    units = _row_units(term)
+    units = term.task.wish_units(len(term.names))
     lost = 0.0 if met else _lost(tick, where) / term.weight
     blockers = () if met else tuple(_blockers(tick, term, level))
     return TaskExplanation(
@@ -103,7 +103,7 @@ def _blockers(tick: Tick, term: Term, level: Response) -> Iterator[Blocker]:
             level=owner.level + 1,
             task=owner.task.name,
             row=owner.names[i],
-            unit=_row_units(owner)[i],
+            unit=owner.task.wish_units(len(owner.names))[i],
             side=_side(tick, j),
             towards=towards,
             relief=float(abs(slope[j]) * weights[j] / term.weight),
@@ -150,27 +150,7 @@ def _bounds(tick: Tick, levels: list[Response]) -> Iterator[ActiveBound]:
             level=term.level + 1,
             task=term.task.name,
             row=term.names[i],
-            unit=_row_units(term)[i],
+            unit=term.task.wish_units(len(term.names))[i],
             side=_side(tick, j),
             payers=tuple((k, float(p)) for k, p in enumerate(prices, 1) if p > 0.0),
         )
-
-
-def _row_units(term: Term) -> tuple[str, ...]:
-    """Unit of every row's bounds: torques as they are, errors per second squared.
-
-    A unit of several parts, "m, rad", is shared out in equal blocks.
-    """
-    parts = [part.strip() for part in term.task.unit.split(",")]
-    if term.task.space != "torque":
-        parts = [_per_second_squared(part) for part in parts]
-    m = len(term.names)
-    if m % len(parts):
-        return (", ".join(parts),) * m
-    return tuple(part for part in parts for _ in range(m // len(parts)))
-
-
-def _per_second_squared(unit: str) -> str:
-    if unit in ("", "-") or unit.endswith("/s^2"):
-        return unit.strip("-")
-    return f"{unit}^2" if unit.endswith("/s") else f"{unit}/s^2"

@@ -12,152 +12,72 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, dot
+from wbc.lexicographic.vectors import add_scaled, dot, length
 from wbc.lexicographic.work import Work
 
-__all__ = ["SIGN", "fault", "multipliers", "norm_of", "outside"]
+__all__ = ["FEASIBILITY", "ROUND_OFF", "fault", "multipliers", "slack_floor"]
 
+FEASIBILITY = 1e-10
+"""A bound counts as violated beyond this times its row's norm."""
 SIGN = 1e-9
 """A multiplier or slack below this, relative to those around it, has no sign."""
-VANISHING = 1e-12
-"""A force below this, relative to the level's rows and bounds, is round-off."""
+NOISE = 1e-14
+"""Round-off of a force, relative to the forces that add up to it."""
+ROUND_OFF = 1e-12
+"""Round-off of a row's value, relative to its norm and to |x|."""
 
 
 @inner
-def multipliers(w: Work, k: int) -> float:
-    """Multipliers of the rows above level k for its force A_k^T s_k.
-
-    k = p asks for the wish for least norm, -x, below all levels.
-
-    Returns:
-        the norm of the force; 0 where it is but round-off, and no multipliers then.
-    """
-    start, first, count, order = w.start, w.first, w.count, w.order
-    W, slack, pull, multiplier = w.W, w.slack, w.pull, w.multiplier
-    p = count.size
-    taken = first[min(k, p)]
-    for j in range(taken):
-        pull[j] = -w.c[j] if k == p else 0.0
-    noise = 0.0
-    if k < p:
-        rows = order[start[k] : start[k] + count[k]]
-        for r in rows:
-            if slack[r] != 0.0:
-                add_scaled(slack[r], W[r], pull, 0, taken)
-        sizes = norm_of(w.size, rows)
-        noise = VANISHING * sizes * (norm_of(slack, rows) + norm_of(w.bound, rows))
-    force = float(np.sqrt(dot(pull, pull, 0, taken)))
-    if force <= noise:
-        return 0.0
-    for j in range(k - 1, -1, -1):
-        rows = order[start[j] : start[j] + count[j]]
-        _peel(W, multiplier, pull, rows, first[j], first[j + 1] - first[j])
-    return force
-
-
-@inner
-def _peel(
-    W: Array, multiplier: Array, pull: Array, rows: IntArray, first: int, rank: int
-) -> None:
-    """Multipliers of a level's pivots; takes their force out of the pull."""
-    for r in rows:
-        multiplier[r] = 0.0
-    for i in range(rank - 1, -1, -1):
-        left = pull[first + i]
-        for r in rows[i + 1 : rank]:
-            left -= W[r, first + i] * multiplier[r]
-        multiplier[rows[i]] = left / W[rows[i], first + i]
-    for r in rows[:rank]:
-        add_scaled(-multiplier[r], W[r], pull, 0, first)
-
-
-@inner
-def norm_of(values: Array, rows: IntArray) -> float:
-    """Norm of some rows' values."""
-    square = 0.0
-    for r in rows:
-        square += values[r] * values[r]
-    return float(np.sqrt(square))
-
-
-@inner
-def outside(
-    value: float, lower: float, upper: float, size: float, feasibility: float
-) -> float:
-    """Signed distance outside the bounds per norm of the row; 0 within tolerance."""
-    above, below = value - upper, lower - value
-    limit = feasibility * (size + abs(value))
-    if above > limit:
-        return above / (size + 1e-300)
-    if below > limit:
-        return -below / (size + 1e-300)
-    return 0.0
-
-
-@inner
-def fault(
-    A: Array, lower: Array, upper: Array, w: Work, feasibility: float
-) -> tuple[int, int]:
+def fault(A: Array, lower: Array, upper: Array, w: Work) -> tuple[int, int]:
     """The worst fault of the highest level that has one: (row, its right side).
 
     Returns:
         (-1, 0) for an optimal working set.
     """
     start, side, size, x = w.start, w.side, w.size, w.x
-    held = False
+    n, reach, held = x.size, length(x), False
     for k in range(w.count.size):
-        worst, row = 0.0, -1
+        worst, row, right = FEASIBILITY + ROUND_OFF * reach, -1, 0
         for r in range(start[k], start[k + 1]):
-            if side[r] == 0:
-                value = dot(A[r], x, 0, x.size)
-                out = outside(value, lower[r], upper[r], size[r], feasibility)
-                if abs(out) > abs(worst):
-                    worst, row = out, r
-            elif side[r] != 2:
+            if side[r] == 0 and size[r] > 0.0:
+                value = dot(A[r], x, 0, n)
+                out = max(value - upper[r], lower[r] - value)
+                if out > worst * size[r]:
+                    worst, row = out / size[r], r
+                    right = 1 if value > upper[r] else -1
+            elif side[r] * side[r] == 1:
                 held = True
         if row >= 0:
-            return row, 1 if worst > 0.0 else -1
-    return (_puller(w) if held else -1), 0
+            return row, right
+    return (_puller(w, 1.0 + reach) if held else -1), 0
 
 
 @inner
-def _puller(w: Work) -> int:
+def _puller(w: Work, reach: float) -> int:
     """The held bound that pulls most in the first level where one does; -1 if none."""
-    start, count, order, side, fixed = w.start, w.count, w.order, w.side, w.fixed
-    p = count.size
+    side, fixed, p = w.side, w.fixed, w.count.size
     for r in range(side.size):
-        fixed[r] = side[r] == 0 or side[r] == 2
+        fixed[r] = side[r] * side[r] != 1 or w.stuck[r]
     for k in range(p + 1):
-        row = -1
-        if k < p:
-            rows = order[start[k] : start[k] + count[k]]
-            row = _against_slack(w.slack, w.bound, w.size, side, fixed, rows)
+        row = _against_slack(w, k, reach) if k < p else -1
         if row < 0:
-            force = multipliers(w, k)
-            if force > 0.0:
-                row = _against_multiplier(w, k, SIGN * force)
+            floor = multipliers(w, k, reach)
+            row = _against_multiplier(w, k, floor) if floor >= 0.0 else -1
         if row >= 0:
             return row
     return -1
 
 
 @inner
-def _against_slack(
-    slack: Array,
-    bound: Array,
-    size: Array,
-    side: IntArray,
-    fixed: IntArray,
-    rows: IntArray,
-) -> int:
+def _against_slack(w: Work, k: int, reach: float) -> int:
     """A row held to a bound that it would leave inwards."""
-    norm, worst, row = norm_of(slack, rows), 0.0, -1
-    for r in rows:
-        if fixed[r] or abs(slack[r]) <= SIGN * (size[r] + abs(bound[r]) + norm):
-            continue
-        fixed[r] = 1
-        if slack[r] * side[r] > worst:
-            worst, row = slack[r] * side[r], r
+    slack, side, fixed = w.slack, w.side, w.fixed
+    worst, row, floor = 0.0, -1, slack_floor(w, k, reach)
+    for r in w.order[w.start[k] : w.start[k] + w.count[k]]:
+        if not fixed[r] and abs(slack[r]) > floor:
+            fixed[r] = 1
+            if slack[r] * side[r] > worst:
+                worst, row = slack[r] * side[r], r
     return row
 
 
@@ -170,9 +90,82 @@ def _against_multiplier(w: Work, k: int, floor: float) -> int:
     for j in range(k):
         for r in order[start[j] : start[j] + count[j]]:
             push = multiplier[r] * size[r] * side[r]
-            if fixed[r] or abs(push) <= floor:
-                continue
-            fixed[r] = 1
-            if -push > worst:
-                worst, row = -push, r
+            if not fixed[r] and abs(push) > floor:
+                fixed[r] = 1
+                if -push > worst:
+                    worst, row = -push, r
     return row
+
+
+@inner
+def slack_floor(w: Work, k: int, reach: float) -> float:
+    """Slack of a row below which it has no sign."""
+    rows = w.order[w.start[k] : w.start[k] + w.count[k]]
+    return float(SIGN * (w.scale[k] * reach + _norm(w.slack, rows)))
+
+
+@inner
+def multipliers(w: Work, k: int, reach: float) -> float:
+    """Multipliers of the rows above level k for its force A_k^T s_k.
+
+    k = p asks for the wish for least norm, -x, below all levels.
+
+    Returns:
+        the force below which a row has no sign; negative where all are round-off.
+    """
+    start, first, count, order = w.start, w.first, w.count, w.order
+    W, pull, multiplier = w.W, w.pull, w.multiplier
+    p = count.size
+    taken = first[min(k, p)]
+    for j in range(taken):
+        pull[j] = -w.c[j] if k == p else 0.0
+    noise = NOISE
+    if k < p:
+        rows = order[start[k] : start[k] + count[k]]
+        for r in rows:
+            if w.slack[r] != 0.0:
+                add_scaled(w.slack[r], W[r], pull, 0, taken)
+        # Directions that the level has lost still pull, by their singular value.
+        scale = w.scale[k]
+        noise = scale * (SIGN * _norm(w.slack, rows) + NOISE * scale * reach)
+    force = float(np.sqrt(dot(pull, pull, 0, taken)))
+    if force <= noise:
+        return -1.0
+    largest = force
+    for j in range(k - 1, -1, -1):
+        rows = order[start[j] : start[j] + count[j]]
+        rank = first[j + 1] - first[j]
+        push = _peel(W, multiplier, w.size, pull, rows, first[j], rank)
+        largest = max(largest, push)
+    return max(SIGN * force, NOISE * largest, noise)
+
+
+@inner
+def _peel(
+    W: Array,
+    multiplier: Array,
+    size: Array,
+    pull: Array,
+    rows: IntArray,
+    first: int,
+    rank: int,
+) -> float:
+    """Multipliers of a level's pivots; takes their forces out, returns the largest."""
+    for r in rows[rank:]:
+        multiplier[r] = 0.0
+    largest = 0.0
+    for i in range(rank - 1, -1, -1):
+        r = rows[i]
+        multiplier[r] = pull[first + i] / W[r, first + i]
+        add_scaled(-multiplier[r], W[r], pull, 0, first + i)
+        largest = max(largest, abs(multiplier[r]) * size[r])
+    return largest
+
+
+@inner
+def _norm(values: Array, rows: IntArray) -> float:
+    """Norm of some rows' values."""
+    square = 0.0
+    for r in rows:
+        square += values[r] * values[r]
+    return float(np.sqrt(square))

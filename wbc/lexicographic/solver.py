@@ -10,18 +10,28 @@ import numpy as np
 from wbc.arrays import Array, IntArray
 from wbc.compiled import announce, compiled, inner
 from wbc.lexicographic.descent import descend
-from wbc.lexicographic.multipliers import fault
-from wbc.lexicographic.sweep import sweep
-from wbc.lexicographic.vectors import dot, reflect_back
-from wbc.lexicographic.work import Memory, Work, unpack
+from wbc.lexicographic.dual import climb
+from wbc.lexicographic.multipliers import ROUND_OFF, fault
+from wbc.lexicographic.sweep import sweep, take_point
+from wbc.lexicographic.vectors import copy, dot, length
+from wbc.lexicographic.work import (
+    MOST,
+    SOLVED,
+    TOLERANCE,
+    Dual,
+    Memory,
+    Work,
+    unpack,
+    unpack_dual,
+)
 from wbc.linalg import RANK_TOLERANCE
 
-__all__ = ["Lexicographic"]
+__all__ = ["Lexicographic", "lexicographic"]
 
-FEASIBILITY = 1e-10
-"""A bound counts as violated beyond this, relative to its row's norm and value."""
-GUESSES = 8
-"""Sweeps that a remembered working set gets before the descent starts from nothing."""
+GUESSES = 4
+"""Sweeps that a remembered working set gets before one is made from nothing."""
+CORRECTIONS = 30
+"""Sweeps that one made from nothing gets."""
 
 
 @final
@@ -31,31 +41,42 @@ class Lexicographic:
     Deterministic, free of allocation after construction, exact to round-off. One
     instance serves problems of one shape and remembers its last working set.
 
+    A direction that keeps less than `tolerance` of its level's norm does not count,
+    nor does a row that is smaller. Near that threshold, roughly from 1e-11 to 1e-7,
+    round-off decides what counts, as for every method in double precision: levels keep
+    their optimum to 1e-9 of their norm times |x|, but which of several points that are
+    equal to that is chosen, and whether it can be proven, is then open.
+
     Args:
         sizes: number of rows of every level, from the top.
         n: number of unknowns.
-        tolerance: a direction of a level counts if it keeps more than this share of
-            the norm of the level's rows.
+        tolerance: as above.
+        most: steps of either method from nothing before it gives up; None for many.
 
     Attributes:
         x: (n,) the minimiser of the last call; overwritten by the next.
         slack: (m,) bound - a x of the rows of its working set, 0 for the others.
         side: (m,) its working set: 1 at upper, -1 at lower, 2 equality, 0 free.
-        sweeps: how many sweeps it took.
+        sweeps: how many sweeps and steps it took.
+        floats, integers: its memory, for compiled code.
     """
 
     def __init__(
-        self, sizes: Sequence[int], n: int, tolerance: float = RANK_TOLERANCE
+        self,
+        sizes: Sequence[int],
+        n: int,
+        tolerance: float = RANK_TOLERANCE,
+        most: int | None = None,
     ) -> None:
         memory = Memory(sizes, n)
-        self._floats, self._integers = memory.floats, memory.integers
+        self.floats, self.integers = memory.floats, memory.integers
         self._work = memory.views
-        self._tolerance = tolerance
-        self._most = 50 + 20 * (int(sum(sizes)) + n)
+        self.floats[TOLERANCE] = tolerance
+        self.integers[MOST] = 50 + 20 * (int(sum(sizes)) + n) if most is None else most
         self.x, self.side = self._work.x, self._work.side
         self.slack = self._work.slack
         self.sweeps = 0
-        announce(_solve, "the solver")
+        announce(lexicographic, "the solver")
 
     @property
     def ranks(self) -> IntArray:
@@ -65,67 +86,124 @@ class Lexicographic:
 
     def reset(self) -> None:
         """Forget the working set."""
-        self._work.side[:] = 0
+        self.integers[SOLVED] = 0
 
     def solve(self, A: Array, lower: Array, upper: Array) -> bool:
         """Solve; whether an optimal working set was found within the iterations.
+
+        If not, x is the best point reached: optimal for the levels above the one that
+        could not be finished.
 
         Args:
             A: (m, n) the levels' rows, stacked; C-contiguous, finite.
             lower: (m,) -inf where there is no bound.
             upper: (m,) +inf where there is no bound; not below `lower`.
         """
-        self.sweeps = _solve(
-            A, lower, upper, self._floats, self._integers, self._tolerance, self._most
-        )
+        self.sweeps = lexicographic(A, lower, upper, self.floats, self.integers)
         return self.sweeps > 0
 
 
 @compiled
-def _solve(
-    A: Array,
-    lower: Array,
-    upper: Array,
-    floats: Array,
-    integers: IntArray,
-    tolerance: float,
-    most: int,
+def lexicographic(
+    A: Array, lower: Array, upper: Array, floats: Array, integers: IntArray
 ) -> int:
-    """Guess from the last working set, then descend; sweeps, negative on failure."""
-    w = unpack(floats, integers)
-    guessed = _prepare(A, lower, upper, w)
-    p, n = w.count.size, w.x.size
-    dirty = 0
-    w.first[0] = 0
-    for guess in range(GUESSES):
-        taken = sweep(A, lower, upper, w, tolerance, dirty, p)
-        for j in range(n):
-            w.x[j] = w.c[j] if j < taken else 0.0
-        reflect_back(w.x, w.V, w.beta, taken)
-        row, side = fault(A, lower, upper, w, FEASIBILITY)
-        if row < 0:
-            return guess + 1
-        if not guessed:
-            break
-        w.side[row] = side
-        dirty = w.level[row]
-    sweeps = descend(A, lower, upper, w, tolerance, FEASIBILITY, most)
-    return sweeps + GUESSES if sweeps > 0 else sweeps - GUESSES
+    """Try the last working set, then one from nothing; steps, negative on failure.
+
+    Arguments as for `Lexicographic.solve`, and the arrays of its `Memory`.
+    """
+    w, tolerance, most = unpack(floats, integers), floats[TOLERANCE], integers[MOST]
+    unbounded = _prepare(A, lower, upper, w, tolerance)
+    steps, left = 0, GUESSES if unbounded or integers[SOLVED] else 0
+    integers[SOLVED] = 0
+    for stage in range(3):
+        if stage > 0:
+            d, left = unpack_dual(floats, integers), CORRECTIONS
+            w.stuck[:] = 0
+            if stage == 1:
+                _find_plain(A, d)
+                taken = climb(A, lower, upper, w, d, tolerance, most)
+            else:
+                taken = descend(A, lower, upper, w, tolerance, most)
+                copy(w.x, d.point)
+            steps += abs(taken)
+            if taken < 0:
+                continue
+        taken = _correct(A, lower, upper, w, tolerance, left)
+        steps += abs(taken)
+        if taken > 0:
+            _report(A, lower, upper, w, False)
+            integers[SOLVED] = 1
+            return steps
+    copy(unpack_dual(floats, integers).point, w.x)
+    _report(A, lower, upper, w, True)
+    return -steps
 
 
 @inner
-def _prepare(A: Array, lower: Array, upper: Array, w: Work) -> bool:
-    """Norms of the rows; sides that the present bounds allow. Is there a guess?"""
-    guessed = False
-    for r in range(w.side.size):
-        w.size[r] = np.sqrt(dot(A[r], A[r], 0, w.x.size))
-        if lower[r] == upper[r]:
-            w.side[r] = 2
-        elif (
-            w.side[r] == 2
-            or (w.side[r] == 1 and upper[r] == np.inf)
-            or (w.side[r] == -1 and lower[r] == -np.inf)
-        ):
-            w.side[r] = 0
-        guessed = guessed or w.side[r] * w.side[r] == 1
-    return guessed
+def _prepare(A: Array, lower: Array, upper: Array, w: Work, tolerance: float) -> bool:
+    """Norms; sides that the present bounds allow. Are there but equalities?"""
+    side, size, start, n, unbounded = w.side, w.size, w.start, w.x.size, True
+    for k in range(w.count.size):
+        square = 0.0
+        for r in range(start[k], start[k + 1]):
+            size[r] = dot(A[r], A[r], 0, n)
+            square += size[r]
+        w.scale[k] = np.sqrt(square)
+        for r in range(start[k], start[k + 1]):
+            lost = size[r] <= tolerance * tolerance * square
+            size[r] = 0.0 if lost else np.sqrt(size[r])
+            w.stuck[r] = 0
+            if lower[r] == upper[r]:
+                side[r] = 2
+                continue
+            unbounded = unbounded and lost
+            gone = upper[r] == np.inf if side[r] == 1 else lower[r] == -np.inf
+            if lost or gone or side[r] == 2:
+                side[r] = 0
+    return unbounded
+
+
+@inner
+def _find_plain(A: Array, d: Dual) -> None:
+    """Which rows have a single coefficient, and where."""
+    for r in range(A.shape[0]):
+        d.column[r] = -1
+        for j in range(A.shape[1]):
+            if A[r, j] != 0.0:
+                if d.column[r] >= 0:
+                    d.column[r] = -1
+                    break
+                d.column[r] = j
+
+
+@inner
+def _correct(
+    A: Array, lower: Array, upper: Array, w: Work, tolerance: float, most: int
+) -> int:
+    """Sweep and mend the worst fault until there is none; negative if `most` fail."""
+    p, x, side, dirty, gone, was = w.count.size, w.x, w.side, 0, -1, 0
+    for count in range(most):
+        take_point(w, x, sweep(A, lower, upper, w, tolerance, dirty, p))
+        row, right = fault(A, lower, upper, w)
+        if row < 0:
+            return count + 1
+        if gone >= 0:
+            value = dot(A[gone], x, 0, x.size)
+            out = value - upper[gone] if was == 1 else lower[gone] - value
+            if out > ROUND_OFF * w.size[gone] * (1.0 + length(x)):
+                row, right, w.stuck[gone] = gone, was, 1
+        gone, was = row if right == 0 else -1, side[row]
+        side[row], dirty = right, w.level[row]
+    return -most
+
+
+@inner
+def _report(A: Array, lower: Array, upper: Array, w: Work, everything: bool) -> None:
+    """Slack and side of rows that count as zero, or of all: as x leaves them."""
+    side, slack = w.side, w.slack
+    for r in range(side.size):
+        if everything or w.size[r] == 0.0:
+            value = dot(A[r], w.x, 0, w.x.size)
+            slack[r] = min(max(value, lower[r]), upper[r]) - value
+            if w.size[r] == 0.0 and side[r] != 2:
+                side[r] = 1 if slack[r] < 0.0 else -1 if slack[r] > 0.0 else 0

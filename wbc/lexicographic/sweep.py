@@ -12,10 +12,13 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, dot, reflect
+from wbc.lexicographic.vectors import add_scaled, copy, dot, reflect_back
 from wbc.lexicographic.work import Work
 
-__all__ = ["sweep"]
+__all__ = ["factorise", "resolve", "sweep", "take_point", "working_rows"]
+
+CANCELLED = 1e-4
+"""A square that differences have brought down to this share is summed afresh."""
 
 
 @inner
@@ -25,39 +28,76 @@ def sweep(
     """Resolve levels k0..k1-1 of the working set; those before k0 must be resolved.
 
     A level's direction counts if it keeps more than `tolerance` of the norm of the
-    level's rows.
+    level.
 
     Returns:
         how many coordinates the levels so far have taken.
     """
-    start, side, order, first, size = w.start, w.side, w.order, w.first, w.size
-    W, V, beta, c = w.W, w.V, w.beta, w.c
-    slack, bound, rest = w.slack, w.bound, w.rest
-    taken = first[k0]
+    taken = w.first[k0]
     for k in range(k0, k1):
-        begin, count, scale = start[k], 0, 0.0
-        for r in range(begin, start[k + 1]):
-            slack[r] = 0.0
-            if side[r] != 0:
-                order[begin + count] = r
-                count += 1
-                scale += size[r] * size[r]
-                W[r] = A[r]
-                reflect(W[r], V, beta, taken)
-                bound[r] = upper[r] if side[r] == 1 else lower[r]
-                slack[r] = bound[r] - dot(W[r], c, 0, taken)
-                rest[r] = dot(W[r], W[r], taken, c.size)
-        rows = order[begin : begin + count]
-        threshold = tolerance * tolerance * scale
-        rank = _triangular(W, V, beta, rest, rows, taken, threshold)
-        if rank == count:
-            _substitute(W, c, slack, rows, taken)
-        elif rank > 0:
-            _least_squares(W, c, slack, w.square, rows, taken, rank)
-        w.count[k] = count
-        taken += rank
-        first[k + 1] = taken
+        w.count[k] = working_rows(w, k)
+        rows = w.order[w.start[k] : w.start[k] + w.count[k]]
+        taken += resolve(A, lower, upper, w, rows, taken, tolerance * w.scale[k])
+        w.first[k + 1] = taken
     return int(taken)
+
+
+@inner
+def working_rows(w: Work, k: int) -> int:
+    """List the level's rows of the working set in `order`; how many there are."""
+    side, size, slack, order = w.side, w.size, w.slack, w.order
+    begin, count = w.start[k], 0
+    for r in range(begin, w.start[k + 1]):
+        slack[r] = 0.0
+        if side[r] != 0 and size[r] > 0.0:
+            order[begin + count] = r
+            count += 1
+    return count
+
+
+@inner
+def take_point(w: Work, x: Array, taken: int) -> None:
+    """X <- the point of the coordinates taken, of least norm in the others."""
+    for j in range(x.size):
+        x[j] = w.c[j] if j < taken else 0.0
+    reflect_back(x, w.V, w.beta, taken)
+
+
+@inner
+def resolve(
+    A: Array,
+    lower: Array,
+    upper: Array,
+    w: Work,
+    rows: IntArray,
+    taken: int,
+    lost: float,
+) -> int:
+    """Meet the rows as well as they can be in the coordinates not taken yet.
+
+    Reorders the rows, pivots first. A row that keeps no more than `lost` in those
+    coordinates has no direction of its own.
+
+    Returns:
+        how many coordinates they take.
+    """
+    W, V, beta, c, slack = w.W, w.V, w.beta, w.c, w.slack
+    side, rest, n = w.side, w.rest, w.c.size
+    for r in rows:
+        copy(A[r], W[r])
+    for i in range(taken):
+        for r in rows:
+            add_scaled(-beta[i] * dot(W[r], V[i], i, n), V[i], W[r], i, n)
+    for r in rows:
+        bound = upper[r] if side[r] == 1 else lower[r]
+        slack[r] = bound - dot(W[r], c, 0, taken)
+        rest[r] = dot(W[r], W[r], taken, n)
+    rank = _triangular(W, V, beta, rest, w.size, rows, taken, lost * lost)
+    if 0 < rank < rows.size:
+        _least_squares(W, c, slack, w.factor, rows, taken, rank)
+    elif rank > 0:
+        _substitute(W, c, slack, rows, taken)
+    return rank
 
 
 @inner
@@ -66,6 +106,7 @@ def _triangular(
     V: Array,
     beta: Array,
     rest: Array,
+    size: Array,
     rows: IntArray,
     taken: int,
     threshold: float,
@@ -81,29 +122,32 @@ def _triangular(
         if rest[pivot] <= threshold:
             return rank
         rows[best], rows[rank] = rows[rank], pivot
-        _eliminate(W, V[taken + rank], beta, rest, rows, rank, taken + rank)
+        _eliminate(W, V[taken + rank], beta, rest, size, rows[rank:], taken + rank)
     return int(most)
 
 
 @inner
 def _eliminate(
-    W: Array, v: Array, beta: Array, rest: Array, rows: IntArray, rank: int, i: int
+    W: Array, v: Array, beta: Array, rest: Array, size: Array, rows: IntArray, i: int
 ) -> None:
-    """Reflect so that the pivot row ends at coordinate i; apply it to those after."""
-    n, row = v.size, W[rows[rank]]
-    length = np.sqrt(dot(row, row, i, n))
-    if row[i] > 0.0:
-        length = -length
+    """Reflect so that the first row ends at coordinate i; apply it to the others."""
+    n, pivot = v.size, W[rows[0]]
+    end = np.sqrt(dot(pivot, pivot, i, n))
+    if pivot[i] > 0.0:
+        end = -end
     for j in range(i, n):
-        v[j] = row[j]
-        row[j] = 0.0
-    v[i] -= length
-    row[i] = length
-    beta[i] = -1.0 / (length * v[i])
-    for q in range(rank + 1, rows.size):
-        other = W[rows[q]]
-        add_scaled(-beta[i] * dot(other, v, i, n), v, other, i, n)
-        rest[rows[q]] = dot(other, other, i + 1, n)
+        v[j] = pivot[j]
+        pivot[j] = 0.0
+    v[i] -= end
+    pivot[i] = end
+    beta[i] = -1.0 / (end * v[i])
+    for r in rows[1:]:
+        row = W[r]
+        add_scaled(-beta[i] * dot(row, v, i, n), v, row, i, n)
+        left = rest[r] - row[i] * row[i]
+        if left < CANCELLED * max(rest[r], size[r] * size[r]):
+            left = dot(row, row, i + 1, n)
+        rest[r] = left
 
 
 @inner
@@ -121,42 +165,39 @@ def _least_squares(
     W: Array,
     c: Array,
     slack: Array,
-    L: Array,
+    R: Array,
     rows: IntArray,
     taken: int,
     rank: int,
 ) -> None:
-    """Meet the level's rows as far as they agree, by Householder's QR of the factor."""
-    count = rows.size
-    for q in range(count):
-        for j in range(rank):
-            L[q, j] = W[rows[q], taken + j]
-        L[q, rank] = slack[rows[q]]
-    for j in range(rank):
-        _column(L, j, count, rank)
+    """Meet the level's rows as far as they agree."""
+    factorise(W, slack, R, rows, taken, rank)
+    y = c[taken : taken + rank]
+    copy(R[rank, :rank], y)
     for j in range(rank - 1, -1, -1):
-        left = L[j, rank]
-        for i in range(j + 1, rank):
-            left -= L[j, i] * c[taken + i]
-        c[taken + j] = left / L[j, j]
-    for q in range(count):
-        slack[rows[q]] -= dot(W[rows[q]], c, taken, taken + rank)
+        y[j] /= R[j, j]
+        add_scaled(-y[j], R[j], y, 0, j)
+    for r in rows:
+        slack[r] -= dot(W[r], c, taken, taken + rank)
 
 
 @inner
-def _column(L: Array, j: int, count: int, rank: int) -> None:
-    """One column of the QR, applied to the columns right of it."""
-    square = 0.0
-    for q in range(j, count):
-        square += L[q, j] * L[q, j]
-    length = -np.sqrt(square) if L[j, j] > 0.0 else np.sqrt(square)
-    L[j, j] -= length
-    beta = -1.0 / (length * L[j, j])
-    for i in range(j + 1, rank + 1):
-        along = 0.0
-        for q in range(j, count):
-            along += L[q, j] * L[q, i]
-        along *= beta
-        for q in range(j, count):
-            L[q, i] -= along * L[q, j]
-    L[j, j] = length
+def factorise(
+    W: Array, slack: Array, R: Array, rows: IntArray, taken: int, rank: int
+) -> None:
+    """Householder's QR of the level's factor and its slack; R holds columns as rows."""
+    count = rows.size
+    for q in range(count):
+        for j in range(rank):
+            R[j, q] = W[rows[q], taken + j]
+        R[rank, q] = slack[rows[q]]
+    for j in range(rank):
+        v = R[j]
+        end = np.sqrt(dot(v, v, j, count))
+        if v[j] > 0.0:
+            end = -end
+        v[j] -= end
+        beta = -1.0 / (end * v[j])
+        for i in range(j + 1, rank + 1):
+            add_scaled(-beta * dot(R[i], v, j, count), v, R[i], j, count)
+        v[j] = end

@@ -7,7 +7,7 @@ from typing import NamedTuple, final
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.compiled import compiled
+from wbc.compiled import compiled, inner
 
 __all__ = ["Face", "Wound"]
 
@@ -74,13 +74,23 @@ def below(
     i, j = nearest // nw, nearest % nw
     low, high = max(i - 1, 0), min(i + 1, nu - 1)
     down, up = max(j - 1, 0), min(j + 1, nw - 1)
-    along = (points[high * nw + j] - points[low * nw + j]) / (high - low)
-    upward = (points[i * nw + up] - points[i * nw + down]) / (up - down)
+    along0, along1, along2 = _slope(points, high * nw + j, low * nw + j, high - low)
+    upward0, upward1, upward2 = _slope(points, i * nw + up, i * nw + down, up - down)
     dx, dz = tip[0] - points[nearest, 0], tip[2] - points[nearest, 2]
-    determinant = along[0] * upward[2] - along[2] * upward[0]
-    a = (dx * upward[2] - dz * upward[0]) / determinant
-    b = (dz * along[0] - dx * along[2]) / determinant
+    determinant = along0 * upward2 - along2 * upward0
+    a = (dx * upward2 - dz * upward0) / determinant
+    b = (dz * along0 - dx * along2) / determinant
     within = -0.5 <= i + a <= nu - 0.5 and j + b <= nw - 0.5
-    face = points[nearest, 1] + a * along[1] + b * upward[1]
-    top = points[i * nw + nw - 1, 2] + 0.5 * upward[2]
+    face = points[nearest, 1] + a * along1 + b * upward1
+    top = points[i * nw + nw - 1, 2] + 0.5 * upward2
     return within, tip[1] - face, top - tip[2], nearest
+
+
+@inner
+def _slope(points: Array, i: int, j: int, steps: int) -> tuple[float, float, float]:
+    """From one point to another, per step."""
+    return (
+        (points[i, 0] - points[j, 0]) / steps,
+        (points[i, 1] - points[j, 1]) / steps,
+        (points[i, 2] - points[j, 2]) / steps,
+    )

@@ -133,7 +133,6 @@ class Incision:
         return Reaction(tearing, wound.depth, True, *points)
 
 
-@compiled
 def links_ahead(
     a1: Array,
     a2: Array,
@@ -153,10 +152,24 @@ def links_ahead(
         reach: how far to look along the motion, and to either side of it [m].
     """
     found = np.empty(alive.size, dtype=np.int_)
+    return found[: _find_ahead(a1, a2, alive, tip, motion, reach, found)]
+
+
+@compiled
+def _find_ahead(
+    a1: Array,
+    a2: Array,
+    alive: BoolArray,
+    tip: Array,
+    motion: Array,
+    reach: float,
+    found: IntArray,
+) -> int:
+    """Write the indices to `found` (N,); how many there are."""
     count = 0
     way = np.hypot(motion[0], motion[1])
     if way == 0.0:
-        return found[:0]
+        return 0
     tx, ty = motion[0] / way, motion[1] / way
     for i in range(alive.size):
         if not alive[i] or min(a1[i, 2], a2[i, 2]) < tip[2]:
@@ -170,4 +183,4 @@ def links_ahead(
         if min(beside1, beside2) <= reach and max(beside1, beside2) >= -reach:
             found[count] = i
             count += 1
-    return found[:count]
+    return count

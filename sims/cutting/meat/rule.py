@@ -10,7 +10,6 @@ from wbc.compiled import compiled, inner
 __all__ = ["cut", "segment_distance"]
 
 
-@compiled
 def cut(before: Array, after: Array, a1: Array, a2: Array, width: float) -> IntArray:
     """Indices of the links that the knife's tip cuts on its way between two instants.
 
@@ -28,6 +27,14 @@ def cut(before: Array, after: Array, a1: Array, a2: Array, width: float) -> IntA
         width: d of P0 eq. 6 [m].
     """
     found = np.empty(a1.shape[0], dtype=np.int_)
+    return found[: _find_cut(before, after, a1, a2, width, found)]
+
+
+@compiled
+def _find_cut(
+    before: Array, after: Array, a1: Array, a2: Array, width: float, found: IntArray
+) -> int:
+    """Write the indices to `found` (N,); how many there are."""
     count = 0
     low = min(before[2], after[2])
     rise = after[2] - before[2]
@@ -51,7 +58,7 @@ def cut(before: Array, after: Array, a1: Array, a2: Array, width: float) -> IntA
         if distance <= width:
             found[count] = i
             count += 1
-    return found[:count]
+    return count
 
 
 @compiled

@@ -1,0 +1,23 @@
+"""Where a tick's compiled code finds things: the table of addresses of a stack.
+
+A call with many arrays costs more than a small solve. So a stack lists once where its
+arrays lie, and the compiled tick is handed this table.
+"""
+
+from __future__ import annotations
+
+JOINTS, ROWS, TASKS, FRAMES = 0, 1, 2, 3
+"""Slots that hold numbers of things."""
+RAW, BANDS, WEIGHTS, TORQUE = 4, 5, 6, 7
+INERTIA, BIAS, VDOT_ROWS, Y_ROWS, BOUNDS, L_INV = 8, 9, 10, 11, 12, 13
+"""Addresses of a stack's arrays."""
+PROGRAM, GAINS, POINTERS, CONSTANTS, BLOCKS, JACOBIAN, SCRATCH = range(14, 21)
+"""Of what compiled tasks read and write."""
+FLOATS, INTEGERS = 21, 23
+"""Of the solver's memory, each followed by its size."""
+SIZE = 25
+
+SOLVED, NOT_POSITIVE, UNSOLVED, NOT_FINITE = -1, -2, -3, -4
+"""How a tick can end, besides with the index of a row that is not finite: well; with
+an inertia that is none; with the best point of a solver out of iterations; with a
+torque that is not finite."""

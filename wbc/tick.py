@@ -1,0 +1,67 @@
+"""What every compiled tick ends with: assembly, solver, inverse dynamics."""
+
+from __future__ import annotations
+
+from wbc import slots
+from wbc.arrays import Array, IntArray
+from wbc.assembly import assemble, back_substitute, inverse_dynamics
+from wbc.compiled import compiled, inner
+from wbc.lexicographic.solver import lexicographic
+from wbc.lexicographic.work import unpack
+from wbc.pointers import floats_at, integers_at
+
+__all__ = ["conclude", "without_kernels"]
+
+
+@inner
+def conclude(table: IntArray, out: Array) -> int:
+    """Assemble the rows that were written, and solve them if `out` has room for it.
+
+    Args:
+        table: of `wbc.slots`.
+        out: (2 n + m + p,) torques, accelerations, slacks and ranks are written; or
+            (0,) for the rows alone.
+
+    Returns:
+        how it ended, as `wbc.slots` lists.
+    """
+    n, m = table[slots.JOINTS], table[slots.ROWS]
+    M = floats_at(table[slots.INERTIA], n * n).reshape((n, n))
+    h = floats_at(table[slots.BIAS], n)
+    L_inv = floats_at(table[slots.L_INV], n * n).reshape((n, n))
+    Ay = floats_at(table[slots.Y_ROWS], m * n).reshape((m, n))
+    bounds = floats_at(table[slots.BOUNDS], 2 * m).reshape((2, m))
+    outcome = assemble(
+        floats_at(table[slots.RAW], m * n).reshape((m, n)),
+        floats_at(table[slots.BANDS], 5 * m).reshape((5, m)),
+        floats_at(table[slots.WEIGHTS], m),
+        floats_at(table[slots.TORQUE], m),
+        M,
+        h,
+        floats_at(table[slots.VDOT_ROWS], m * n).reshape((m, n)),
+        Ay,
+        bounds,
+        L_inv,
+    )
+    if outcome != slots.SOLVED or out.size == 0:
+        return int(outcome)
+    floats = floats_at(table[slots.FLOATS], table[slots.FLOATS + 1])
+    integers = integers_at(table[slots.INTEGERS], table[slots.INTEGERS + 1])
+    sweeps = lexicographic(Ay, bounds[0], bounds[1], floats, integers)
+    w, vdot = unpack(floats, integers), out[n : 2 * n]
+    back_substitute(L_inv, w.x, vdot)
+    for i in range(m):
+        out[2 * n + i] = w.slack[i]
+    for k in range(w.count.size):
+        out[2 * n + m + k] = w.first[k + 1] - w.first[k]
+    if not inverse_dynamics(M, h, vdot, out[:n]):
+        return slots.NOT_FINITE
+    return slots.SOLVED if sweeps > 0 else slots.UNSOLVED
+
+
+@compiled
+def without_kernels(
+    table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array
+) -> int:
+    """The tick of a stack whose tasks are all plain Python."""
+    return conclude(table, out)
