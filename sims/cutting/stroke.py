@@ -58,7 +58,7 @@ class Stroke:
             raise InputError(f"a passage from x = {start} to {end} m has no length.")
         self.curve, self.start, self.end = curve, float(start), float(end)
         self.law = Quintic(curve.length(self.start, self.end), duration)
-        self._x = self.start
+        self._x, self._xd, self._t = self.start, 0.0, 0.0
 
     @property
     def duration(self) -> float:
@@ -68,10 +68,11 @@ class Stroke:
     def at(self, t: float) -> Motion:
         """X(t) with speed and acceleration [m, m/s, m/s^2].
 
-        Newton on the arc length from `start` to x = s(t), from the last x on.
+        Newton on the arc length from `start` to x = s(t), from where the last call's
+        speed leads.
         """
         s, sd, sdd = self.law.at(t)
-        x = self._x
+        x = self._x + self._xd * (t - self._t)
         for _ in range(NEWTON_STEPS):
             bend = self.curve.at(x)
             short = self.curve.length(self.start, x) - s
@@ -79,10 +80,10 @@ class Stroke:
             x -= step
             if abs(step) < CONVERGED:
                 break
-        self._x = x
         bend = self.curve.at(x)
         stretch = math.sqrt(1.0 + bend.y1 * bend.y1)
         xd = sd / stretch
+        self._x, self._xd, self._t = x, xd, t
         xdd = sdd / stretch - bend.y1 * bend.y2 * xd * xd / (stretch * stretch)
         return Motion(x, xd, xdd)
 
