@@ -19,7 +19,8 @@ class Guard:
 
     Attributes:
         lag: how far the tip may be from its target [m].
-        cutting: largest force of the knife [N].
+        cutting: largest force of the knife [N]; 137 N at the tip are all that the
+            38 Nm of the sixth joint can hold.
         excess: by how much the pull may be above what is wanted [N]. Below it may be:
             a muscle that comes free takes no force.
         patience: how long any of these may last [s].
