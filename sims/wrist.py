@@ -9,6 +9,7 @@ import numpy as np
 
 from wbc import InputError, UnknownName
 from wbc.arrays import Array, positive
+from wbc.compiled import compiled
 
 __all__ = ["WristSensor"]
 
@@ -98,8 +99,9 @@ class WristSensor:
             )
         self._dt = model.opt.timestep
         self._mass, self._first, self._second = _tool(model, body, self._id)
-        starts = [int(model.sensor(self._part(part)).adr[0]) for part in PARTS]
-        self._where = [slice(start, start + 3) for start in starts]
+        start = int(model.sensor(self._part("force")).adr[0])
+        self._scratch = np.empty((6, 6))
+        self._where = slice(start, start + 3 * len(PARTS))  # mounted in a row
 
     def reset(self, data: mujoco.MjData) -> None:
         """Start bias, noise and filter again; the arm must be at rest and held."""
@@ -130,13 +132,9 @@ class WristSensor:
         The engine's acceleration of a frame is a - g already.
         """
         R = data.site_xmat[self._id].reshape(3, 3)
-        force, torque, a, alpha, omega = (data.sensordata[k] for k in self._where)
-        w, swing = _skew(omega @ R), _skew(alpha @ R)
-        B, a = swing + w @ w, a @ R  # a point at r accelerates by a + B r
-        needs = self._mass * a + B @ self._first
-        T = B @ self._second + np.outer(a, self._first)
-        turns = np.array([T[2, 1] - T[1, 2], T[0, 2] - T[2, 0], T[1, 0] - T[0, 1]])
-        wrench: Array = (np.array([force - needs, torque - turns]) @ R.T).ravel()
+        feel = data.sensordata[self._where]
+        wrench, tool = np.empty(6), (self._mass, self._first, self._second)
+        _exerted(R, feel, *tool, self._scratch, wrench)
         return wrench
 
     def _part(self, part: str) -> str:
@@ -150,10 +148,56 @@ def _both(force: float, torque: float, what: str) -> Array:
     return np.repeat([force, torque], 3)
 
 
-def _skew(x: Array) -> Array:
-    """The matrix (3, 3) of x cross."""
-    a, b, c = x.tolist()
-    return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])
+@compiled
+def _exerted(
+    R: Array,
+    feel: Array,
+    mass: float,
+    first: Array,
+    second: Array,
+    scratch: Array,
+    out: Array,
+) -> None:
+    """Wrench on the surroundings, world axes.
+
+    Args:
+        R: (3, 3) orientation of the site.
+        feel: (15,) what the engine reads there, in the order of `PARTS`: force and
+            torque in the site's axes, the others in the world's.
+        mass: of the tool.
+        first: (3,) its first moments about the site, in the site's axes.
+        second: (3, 3) its second moments.
+        scratch: (6, 6) numbers on the way.
+        out: (6,) is written.
+    """
+    local, own = scratch[:3, :3], scratch[3]  # a, alpha, omega in the site's axes
+    for part in range(3):
+        for i in range(3):
+            local[part, i] = 0.0
+            for j in range(3):
+                local[part, i] += R[j, i] * feel[6 + 3 * part + j]
+    a, alpha, w = local[0], local[1], local[2]
+    B, T = scratch[:3, 3:], scratch[4, :3]  # a point at r accelerates by a + B r
+    for i in range(3):
+        for j in range(3):
+            B[i, j] = w[i] * w[j]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        B[i, i] = -(w[j] * w[j] + w[k] * w[k])
+        B[k, j] += alpha[i]
+        B[j, k] -= alpha[i]
+    for i in range(3):
+        own[i] = feel[i] - mass * a[i]
+        for j in range(3):
+            own[i] -= B[i, j] * first[j]
+        j, k = (i + 1) % 3, (i + 2) % 3
+        T[i] = a[k] * first[j] - a[j] * first[k]
+        for n in range(3):
+            T[i] += B[k, n] * second[n, j] - B[j, n] * second[n, k]
+        own[3 + i] = feel[3 + i] - T[i]
+    for i in range(3):
+        out[i] = R[i, 0] * own[0] + R[i, 1] * own[1] + R[i, 2] * own[2]
+        out[3 + i] = R[i, 0] * own[3] + R[i, 1] * own[4] + R[i, 2] * own[5]
 
 
 def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
