@@ -3,7 +3,7 @@
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
-`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`, `SingularDamping`) and limits
 (`JointLimits`, `JointLocking`, `TorqueLimits`).
 """
 
@@ -43,6 +43,7 @@ from tasks.limits import JointLimits, TorqueLimits
 from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
+from tasks.singular import SingularDamping
 
 __all__ = [
     "Admittance",
@@ -84,6 +85,7 @@ __all__ = [
     "PointOnPlane",
     "PointOnPoint",
     "Posture",
+    "SingularDamping",
     "TorqueLimits",
     "TravelSpeed",
     "rim_grasp",
