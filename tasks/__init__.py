@@ -3,8 +3,9 @@
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
-`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`, `SingularDamping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`).
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`),
+singularities (`SingularDamping`) and limits (`JointLimits`, `JointLocking`,
+`TorqueLimits`).
 """
 
 from tasks.along import PointOnCurve, TravelSpeed

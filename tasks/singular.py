@@ -61,12 +61,8 @@ class SingularDamping(Task):
         name: str = "singular damping",
     ) -> None:
         super().__init__(name, "rad/s", task.frames)
-        if not isinstance(task.law, PD | SaturatedPD):
-            raise InputError(
-                f"'{name}' needs a task with a PD or SaturatedPD law, but that of "
-                f"'{task.name}' is {task.law!r}."
-            )
         self.task = task
+        self._law()
         self.threshold = positive(threshold, "threshold")
         self.factor = positive(factor, "factor")
         self.bend = positive(bend, "bend")
@@ -76,8 +72,9 @@ class SingularDamping(Task):
         return tuple(f"direction {i + 1}" for i in range(robot.nv))
 
     def check(self, robot: Robot) -> None:
-        """The task fits the robot."""
+        """The task fits the robot, and its law is one of the two."""
         self.task.check(robot)
+        self._law()
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
@@ -91,11 +88,21 @@ class SingularDamping(Task):
         rows.A[:] = np.sqrt(square * fade)[:, None] * Vt
         rows.rate[:] = rows.error[:] = rows.A @ state.v
         rows.drift[:] = 0.0
-        damping = float(np.max(self.task.law.damping))
+        damping = float(np.max(self._law().damping))
         rows.upper[:] = rows.lower[:] = -damping * rows.rate
 
     def _error(self, seen: Rows) -> float:
         """Norm of the error, no larger than a law that saturates takes it."""
-        wish: Array = self.task.law.acceleration(seen.error, np.zeros_like(seen.error))
-        stiffness = max(float(np.max(self.task.law.stiffness)), np.finfo(float).tiny)
+        law = self._law()
+        wish: Array = law.acceleration(seen.error, np.zeros_like(seen.error))
+        stiffness = max(float(np.max(law.stiffness)), np.finfo(float).tiny)
         return float(np.linalg.norm(wish)) / stiffness
+
+    def _law(self) -> PD | SaturatedPD:
+        law = self.task.law
+        if isinstance(law, PD | SaturatedPD):
+            return law
+        raise InputError(
+            f"'{self.name}' needs a task with a PD or SaturatedPD law, but that of "
+            f"'{self.task.name}' is {law!r}."
+        )

@@ -1,4 +1,4 @@
-"""Chatter of a torque: how often it turns back within a short time."""
+"""Chatter of a torque: how far it travels, and how often it turns, in a short time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,14 @@ import numpy as np
 
 from wbc.arrays import Array
 
-__all__ = ["reversals"]
+__all__ = ["reversals", "travel"]
+
+
+def travel(x: Array, window: int) -> float:
+    """Largest total variation of a series (T,) within any `window` samples."""
+    way = np.append(0.0, np.cumsum(np.abs(np.diff(x))))
+    window = min(window, x.size - 1)
+    return float((way[window:] - way[: way.size - window]).max())
 
 
 def reversals(x: Array, swing: float, window: int) -> int:

@@ -2,83 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
-from typing import final
 
 import numpy as np
 import pinocchio as pin
 
-from sims.constraints.case import READY, Case, Stack, Trial, limits, rise
-from sims.constraints.chatter import reversals
+from sims.constraints.case import Case, Stack, Trial, limits, rise
+from sims.constraints.chatter import reversals, travel
+from sims.constraints.excursion import Excursion, excursions
 from sims.constraints.surface import TIP
+from sims.constraints.weakness import SINGULAR, goal_of, reported, weakness
 from sims.log import Log
 from sims.metrics import Metric
 from sims.report.figures import time_series
 from tasks import Damping, FramePose, FramePosition, SingularDamping
-from wbc import Hierarchy, Robot, SaturatedPD, resolve
+from wbc import Robot, SaturatedPD
 from wbc.arrays import Array
 
-__all__ = ["SINGULAR", "cases", "figures", "metrics", "reported"]
+__all__ = ["cases", "figures", "metrics"]
 
 STIFF = 2500.0
 SPEED, ACCELERATION = 1.5, 5.0
 """Largest that the goal asks for [m/s, m/s^2; rad/s, rad/s^2]."""
 REST = 40.0
 """Rate at which free joints come to rest [1/s]."""
-WAIT, AFTER = 0.5, 1.5
+WAIT, AFTER = 0.5, 2.0
 """Rest at the goal, and after the return [s]."""
-SHOULDER = np.array([0.15, 0.0, 0.43])
-REACH = 0.59 + np.hypot(0.13, 0.684) + 0.34
-"""From joint 2 to the tip with elbow and wrist stretched [m]."""
-SINGULAR = 0.05
-"""Smallest singular value over the norm of J from where a posture is a singular one."""
-NO_TURN = np.zeros(3)
-SAMPLE = 20
-"""Ticks between two looks at the singular values."""
-SWING, WINDOW, REVERSALS = 0.02, 100, 2
-"""At most two turning points of a joint's torque, 2 % of its limit apart, in 0.1 s: one
-swing to and fro, as when the arm brakes. A bang-bang cycle has dozens."""
-
-
-@final
-@dataclass(frozen=True, slots=True, eq=False)
-class Excursion:
-    """Where the goal goes, and comes back from.
-
-    Attributes:
-        start: (6,) posture [rad].
-        way: (3,) of the goal from the start [m].
-        time: for the way out, and for the way back [s].
-        turn: (3,) rotation vector in world axes [rad]; None for a position alone.
-    """
-
-    start: Array
-    way: Array
-    time: float
-    turn: Array | None = None
-
-
-def _excursions(robot: Robot) -> dict[str, Excursion]:
-    stretched = np.radians([0.0, 20.0, -60.0, 0.0, 40.0, 0.0])
-    bent, flipped = (
-        np.radians([0.0, 5.0, -110.0, *wrist])
-        for wrist in ([-30.0, 25.0, 0.0], [85.0, -20.0, 0.0])
-    )
-    turned = np.radians([20.0, -40.0, -120.0, 0.0, 70.0, 0.0])
-    F, G = (robot.state(q).frame(TIP) for q in (bent, flipped))
-    wrist = robot.state(turned).frame("link5").p
-    over = 1.15 * np.array([-wrist[0], 0.004 - wrist[1], 0.0])
-    p = robot.state(READY).frame(TIP).p
-    out = np.array([0.90, 0.20, 0.30])
-    border = SHOULDER + REACH * out / np.linalg.norm(out) - p
-    return {
-        "elbow": Excursion(stretched, np.array([0.6, 0.0, 0.1]), 1.5, NO_TURN),
-        "wrist": Excursion(bent, G.p - F.p, 1.5, pin.log3(G.R @ F.R.T)),
-        "shoulder": Excursion(turned, over, 1.5, NO_TURN),
-        "border": Excursion(READY, border, 2.5),
-        "beyond": Excursion(READY, border + 0.3 * out / np.linalg.norm(out), 2.5),
-    }
+WINDOW = 100
+"""Ticks in which chatter is looked for: 0.1 s."""
+TRAVEL = 1.0
+"""Of a torque in that time, up and down, over its limit: one full swing at most."""
+SWING, REVERSALS = 0.02, 4
+"""Turning points in that time of swings beyond 2 % of the limit: 20 Hz at most, where
+switching from tick to tick would give a hundred."""
 
 
 def cases(robot: Robot) -> list[Case]:
@@ -90,7 +46,7 @@ def cases(robot: Robot) -> list[Case]:
             2.0 * trip.time + WAIT + AFTER,
             trip.start,
         )
-        for name, trip in _excursions(robot).items()
+        for name, trip in excursions(robot).items()
     ]
 
 
@@ -119,38 +75,6 @@ def _stack(robot: Robot, trip: Excursion, q: Array, begin: float) -> Stack:
     return limits() >> level >> Damping(REST), script
 
 
-def weakness(trial: Trial) -> tuple[Array, Array]:
-    """Smallest singular value of the goal, relative to its norm, at some times.
-
-    Returns:
-        Indices of the ticks (K,), and the values (K,).
-    """
-    log, rows = trial.log, len(_goal(trial).rows)
-    ticks = np.arange(0, log.t.size, SAMPLE)
-    J = [log.robot.state(log.q[k]).frame(TIP).J[:rows] for k in ticks]
-    s = np.linalg.svd(np.array(J), compute_uv=False)
-    return ticks, s[:, -1] / np.linalg.norm(s, axis=1)
-
-
-def reported(trial: Trial) -> bool:
-    """Whether the tick nearest to the singularity says what is lost, and to whom.
-
-    The analysis finds a direction less than the goal has rows; the explanation says
-    that the goal is not met, how much is missing, and that a singular direction is why.
-    """
-    log, (hierarchy, script) = trial.log, trial.stack
-    ticks, values = weakness(trial)
-    k = int(ticks[np.argmin(values)])
-    if script is not None:
-        script(float(log.t[k]))
-    state = log.robot.state(log.q[k], log.v[k], float(log.t[k]))
-    goal = Hierarchy.of(_goal(trial))
-    level = goal.analyse(state, metric="joint", tolerance=SINGULAR).level("goal")
-    task = resolve(state, hierarchy, trial.resolver).explain().task("goal")
-    blamed = any(blocker.task == "singular damping" for blocker in task.blockers)
-    return level.rank < level.rows and not task.met and blamed
-
-
 def metrics(trials: dict[str, Trial], mismatch: bool) -> list[Metric]:
     """Bounded and smooth all the way, and back where it began."""
     del mismatch
@@ -159,7 +83,8 @@ def metrics(trials: dict[str, Trial], mismatch: bool) -> list[Metric]:
     values = {
         "singular_joint_speed_max_fraction": (max(map(_speed, logs)), 1.0),
         "singular_torque_max_fraction": (max(map(_torque, logs)), 1.0),
-        "singular_torque_reversals": (max(map(_chatter, logs)), REVERSALS),
+        "singular_torque_travel_fraction": (max(map(_travel, logs)), TRAVEL),
+        "singular_torque_reversals": (max(map(_reversals, logs)), REVERSALS),
         "singular_recovery_error_m": (max(_back(log)[0] for log in logs), 1e-3),
         "singular_recovery_error_rad": (_turned_back(mine), 5e-3),
         "singular_value_reached": (
@@ -171,12 +96,6 @@ def metrics(trials: dict[str, Trial], mismatch: bool) -> list[Metric]:
     return [Metric(k, float(value), bound) for k, (value, bound) in values.items()]
 
 
-def _goal(trial: Trial) -> FramePose | FramePosition:
-    task = next(t for t in trial.stack[0].tasks() if t.name == "goal")
-    assert isinstance(task, FramePose | FramePosition)
-    return task
-
-
 def _speed(log: Log) -> float:
     return float((np.abs(log.v) / log.robot.v_max).max())
 
@@ -185,7 +104,11 @@ def _torque(log: Log) -> float:
     return float((np.abs(log.torque) / log.robot.tau_max).max())
 
 
-def _chatter(log: Log) -> int:
+def _travel(log: Log) -> float:
+    return max(travel(x, WINDOW) for x in (log.torque / log.robot.tau_max).T)
+
+
+def _reversals(log: Log) -> int:
     load = log.torque / log.robot.tau_max
     return max(reversals(x, SWING, WINDOW) for x in load.T)
 
@@ -198,7 +121,7 @@ def _back(log: Log) -> tuple[float, float]:
 
 
 def _turned_back(trials: dict[str, Trial]) -> float:
-    poses = [t.log for t in trials.values() if isinstance(_goal(t), FramePose)]
+    poses = [t.log for t in trials.values() if isinstance(goal_of(t), FramePose)]
     return max(_back(log)[1] for log in poses)
 
 
@@ -211,9 +134,8 @@ def figures(trials: dict[str, Trial]) -> list[tuple[str, str]]:
     for name, log in logs.items():
         ticks, values_at = weakness(trials[f"singular_{name}"])
         values[name] = np.interp(t, t[ticks], values_at, right=np.nan)
-        errors[name] = np.append(
-            log.errors["goal"], np.full(t.size - log.t.size, np.nan)
-        )
+        missing = np.full(t.size - log.t.size, np.nan)
+        errors[name] = np.append(log.errors["goal"], missing)
     load = {
         joint: last.torque[:, i] / last.robot.tau_max[i]
         for i, joint in enumerate(last.robot.joint_names)
