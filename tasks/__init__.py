@@ -3,9 +3,10 @@
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
-`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`). `KnifePose` guides a blade against
-what it cuts; `Clearance` keeps two arms of one model apart.
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`), singularities
+(`SingularDamping`) and limits (`JointLimits`, `JointLocking`, `TorqueLimits`).
+`KnifePose` guides a blade against what it cuts; `Clearance` keeps two arms of one model
+apart.
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
@@ -46,6 +47,7 @@ from tasks.limits import JointLimits, TorqueLimits
 from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
+from tasks.singular import SingularDamping
 
 __all__ = [
     "Admittance",
@@ -89,6 +91,7 @@ __all__ = [
     "PointOnPlane",
     "PointOnPoint",
     "Posture",
+    "SingularDamping",
     "TorqueLimits",
     "TravelSpeed",
     "rim_grasp",
