@@ -77,7 +77,8 @@ def run(
         log.record(tick, seen, solution, after - before)
         cell.step()
         log.spent += time.perf_counter() - began
-        if certify and tick % CERTIFY_EVERY == 0 and solution.ok:
+        settled = solution.ok and solution.share == 1.0
+        if certify and tick % CERTIFY_EVERY == 0 and settled:
             log.worst_certificate = max(
                 log.worst_certificate, solution.certificate().worst
             )

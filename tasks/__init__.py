@@ -4,7 +4,7 @@ Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
 `Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`).
+(`JointLimits`, `JointLocking`, `TorqueLimits`, `TorqueRateLimits`).
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
@@ -39,7 +39,7 @@ from tasks.geometry import (
     rim_grasp,
 )
 from tasks.impedance import Admittance, Impedance
-from tasks.limits import JointLimits, TorqueLimits
+from tasks.limits import JointLimits, TorqueLimits, TorqueRateLimits
 from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
@@ -85,6 +85,7 @@ __all__ = [
     "PointOnPoint",
     "Posture",
     "TorqueLimits",
+    "TorqueRateLimits",
     "TravelSpeed",
     "rim_grasp",
 ]
