@@ -50,14 +50,20 @@ def _parser() -> argparse.ArgumentParser:
     against = _add(
         commands,
         "compare",
-        "runs a cell under several resolvers",
-        lambda a: compare(a.cell, a.resolvers.split(","), _options(a), a.out),
+        "runs a cell, or a study, under several resolvers",
+        lambda a: compare(a.cell, a.resolvers, _options(a), a.out),
     )
-    against.add_argument("cell", metavar="CELL", help="see 'wbc list'")
+    against.add_argument(
+        "cell",
+        metavar="CELL",
+        help="see 'wbc list'; or 'random' for random stacks, 'transitions' for "
+        "changes of the hierarchy at run time",
+    )
     against.add_argument(
         "--resolvers",
-        default="hqp,nullspace,weighted",
-        help="names with commas between",
+        type=lambda text: text.split(","),
+        default=[],
+        help=f"names with commas between: {RESOLVERS}",
     )
     _common(against)
     speed = _add(

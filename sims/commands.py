@@ -13,16 +13,19 @@ import numpy as np
 
 from sims.audit import audit
 from sims.benchmark import measure
+from sims.compare.studies import STUDIES
 from sims.demo import Options, Outcome
 from sims.metrics import Metric, format_value, table, to_json, verdict
 from sims.registry import cell_names, find_demo
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
-from wbc import InputError
+from wbc import InputError, UnknownName
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
 
+COMPARED = ("hqp", "nullspace", "weighted")
+"""Resolvers of a cell, where none are named."""
 PACKAGES = ("wbc", "pin", "mujoco", "numba", "proxsuite", "qpsolvers", "numpy", "scipy")
 
 
@@ -48,11 +51,25 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
 
 
 def compare(name: str, resolvers: list[str], options: Options, out: str | None) -> int:
-    """Run a cell under several resolvers and print their metrics side by side."""
-    demo = find_demo(name)
+    """Run a cell, or a study, under several resolvers, side by side.
+
+    Args:
+        name: of a cell, "random" or "transitions".
+        resolvers: names; [] for a choice that suits.
+        options: for the runs.
+        out: folder for reports.
+
+    Raises:
+        UnknownName: there is no such cell or resolver.
+    """
+    if name not in (*STUDIES, *cell_names()):
+        raise UnknownName("cell or study", name, [*cell_names(), *STUDIES])
     for resolver in resolvers:
         make_resolver(resolver)
     folder = None if out is None else _folder(out)
+    if name in STUDIES:
+        return STUDIES[name](resolvers, options, folder)
+    demo, resolvers = find_demo(name), resolvers or list(COMPARED)
     outcomes: dict[str, Outcome] = {}
     for resolver in resolvers:
         outcomes[resolver] = demo.run(replace(options, resolver=resolver))

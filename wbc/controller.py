@@ -110,6 +110,7 @@ class Controller:
         hierarchy: Hierarchy | Level | Task,
         over: float = 0.3,
         resolver: Resolver | None = None,
+        rate: float = 500.0,
     ) -> None:
         """Hand over to another hierarchy, from the next tick on, without a jump.
 
@@ -122,17 +123,20 @@ class Controller:
             hierarchy: what is wanted from now on.
             over: duration [s]; 0 switches at once, with whatever jump that means.
             resolver: the resolver from now on; the present one by default.
+            rate: the change takes longer where it would move a torque faster than so
+                [Nm/s]; industrial arms stop at 1000 in all.
 
         Raises:
-            UnknownName, InputError: a task does not fit the robot, or `over` is
-                negative; all stays as it was.
+            UnknownName, InputError: a task does not fit the robot, `over` is negative,
+                or the rate is not greater than 0; all stays as it was.
         """
         wanted, resolver = Hierarchy.of(hierarchy), resolver or self.resolver
         ticks = round(positive(over, "over", zero=True) / self.dt)
+        most = positive(rate, "rate") * self.dt
         bound = Bound(self.robot, wanted, resolver)
         if self._transition is None:
             self._transition = Transition(self._bound)
-        self._transition.to(bound, ticks)
+        self._transition.to(bound, ticks, most)
         self.hierarchy, self.resolver = wanted, resolver
 
     @property

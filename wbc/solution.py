@@ -129,6 +129,20 @@ class Solution:
         y = np.linalg.solve(stack.L_inv.T, self.acceleration)
         return certify(levels, y, then)
 
+    def level_rows(self) -> list[tuple[Array, Array, Array]]:
+        """Copies of the rows that were resolved: (A (m, n), lower (m,), upper (m,)).
+
+        Weighted, in joint accelerations, from the top level down.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        stack = self._fresh()
+        return [
+            (stack.A[k].copy(), stack.lower[k].copy(), stack.upper[k].copy())
+            for k in stack.levels
+        ]
+
     def report(self, task: str) -> TaskReport:
         """How a task fared.
 

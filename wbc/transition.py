@@ -4,9 +4,10 @@ While a change is under way both stacks are resolved, and the robot gets
 
     tau = tau_old + s (tau_new - tau_old),      0 < s <= 1,
 
-with s a quintic in time. Limits that both keep are kept, because they are convex; a
-task that both meet is met, because it is affine in vdot. A change that comes while
-another one is under way starts from the blend, so any number may follow each other.
+with s a quintic in time, stretched where it would change a torque too fast. Limits that
+both keep are kept, because they are convex; a task that both meet is met, because it is
+affine in vdot. A change that comes while another one is under way starts from the
+blend, so any number may follow each other.
 """
 
 from __future__ import annotations
@@ -28,6 +29,10 @@ __all__ = ["Bound", "Transition"]
 
 MOST = 4
 """Stacks that are resolved in one tick; a further change waits for its turn."""
+STEEPEST = 1.875
+"""Largest slope of the quintic."""
+END = 1e-9
+"""A ramp this close to its end is there."""
 
 
 @final
@@ -58,19 +63,28 @@ class Bound:
 
 @dataclass(slots=True, eq=False)
 class _Ramp:
-    """A hierarchy on its way in: `done` of `ticks`, or none for the one before all."""
+    """A hierarchy on its way in; u goes from 0 to 1, by `step` a tick at most.
+
+    `most` is by how much it may change a torque in a tick [Nm].
+    """
 
     bound: Bound
-    ticks: int
-    done: int = 0
+    step: float = 1.0
+    most: float = np.inf
+    u: float = 0.0
 
     @property
     def share(self) -> float:
         """Of the blend with all that is older."""
-        if self.done >= self.ticks:
-            return 1.0
-        u = self.done / self.ticks
+        u = self.u
         return u**3 * (10.0 - 15.0 * u + 6.0 * u * u)
+
+    def advance(self, difference: Array, others: int) -> float:
+        """Move on, while so many others ramp too; slower where torques (n,) differ."""
+        largest = STEEPEST * others * float(np.abs(difference).max())
+        step = self.step if largest == 0.0 else min(self.step, self.most / largest)
+        self.u = 1.0 if self.u + step > 1.0 - END else self.u + step
+        return self.share
 
 
 @final
@@ -85,7 +99,7 @@ class Transition:
     """
 
     def __init__(self, old: Bound) -> None:
-        self._live = [_Ramp(old, 0)]
+        self._live = [_Ramp(old, u=1.0)]
         self._waiting: _Ramp | None = None
         self.share = 1.0
 
@@ -99,11 +113,17 @@ class Transition:
         """Whether the newest is alone, and none waits."""
         return len(self._live) == 1 and self._waiting is None
 
-    def to(self, bound: Bound, ticks: int) -> None:
-        """Begin with one more, at the next tick; the last one to wait is the one."""
-        ramp = _Ramp(bound, ticks)
+    def to(self, bound: Bound, ticks: int, most: float) -> None:
+        """Begin with one more, at the next tick; the last one to wait is the one.
+
+        Args:
+            bound: the hierarchy.
+            ticks: that it takes to come in, 0 for at once.
+            most: change of a torque in one tick that this may cause [Nm].
+        """
+        ramp = _Ramp(bound, 1.0 / max(ticks, 1), most)
         if ticks == 0:
-            self._live, self._waiting = [ramp], None
+            self._live, self._waiting = [_Ramp(bound, u=1.0)], None
         elif len(self._live) < MOST:
             self._live.append(ramp)
         else:
@@ -126,8 +146,6 @@ class Transition:
                 found.insert(0, ramp.bound.tick(state))
             except (SolverError, np.linalg.LinAlgError):
                 self._live.remove(ramp)
-        for ramp in self._live:
-            ramp.done += 1
         blended = self._blend(found)
         first = max(i for i, r in enumerate(self._live) if i == 0 or r.share == 1.0)
         self._live = self._live[first:]
@@ -137,10 +155,12 @@ class Transition:
     def _blend(self, found: list[tuple[Array, Answer]]) -> tuple[Array, Answer]:
         """What all of them give together, oldest first."""
         torque, (vdot, *_) = found[0]
-        status = found[-1][1].status
-        for ramp, (tau, answer) in zip(self._live[1:], found[1:], strict=True):
-            torque = torque + ramp.share * (tau - torque)
-            vdot = vdot + ramp.share * (answer.vdot - vdot)
+        status, ramps = found[-1][1].status, self._live[1:]
+        self._live[0].u = 1.0  # nothing older is left to blend with
+        for ramp, (tau, answer) in zip(ramps, found[1:], strict=True):
+            share = ramp.advance(tau - torque, len(ramps))
+            torque = torque + share * (tau - torque)
+            vdot = vdot + share * (answer.vdot - vdot)
         if any(answer.status is Status.INCOMPLETE for _, answer in found):
             status = Status.INCOMPLETE
         newest = found[-1][1]

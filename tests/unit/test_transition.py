@@ -39,6 +39,7 @@ ARM = seven_axis()
 HOME, STILL = ARM.q_home, np.zeros(ARM.nv)
 AWAY = HOME + 0.3
 OVER = 0.05
+FAST = 1e9
 TICKS = 50
 families = pytest.mark.parametrize(
     "resolver", [HierarchicalQP(), NullSpace()], ids=["hqp", "nullspace"]
@@ -61,7 +62,7 @@ def ticks(control: Controller, count: int, q=HOME, v=STILL) -> np.ndarray:
 def test_the_torque_goes_smoothly_from_one_hierarchy_to_the_other(resolver):
     control = Controller(ARM, TorqueLimits() >> held(), resolver)
     before = ticks(control, 1)[0]
-    control.change(TorqueLimits() >> held(AWAY), OVER)
+    control.change(TorqueLimits() >> held(AWAY), OVER, rate=FAST)
     assert control.changing
     way = ticks(control, TICKS)
     assert not control.changing
@@ -73,6 +74,32 @@ def test_the_torque_goes_smoothly_from_one_hierarchy_to_the_other(resolver):
     assert (steps <= 1.9 * whole / TICKS + TORQUE).all(), "the steepest of a quintic"
     share = np.linalg.norm(way - before, axis=1) / np.linalg.norm(after - before)
     assert (np.diff(share) >= -ROUND_OFF).all()
+
+
+@families
+def test_the_change_takes_longer_where_it_would_be_too_fast(resolver):
+    control = Controller(ARM, held(), resolver)
+    before = ticks(control, 1)
+    control.change(held(AWAY), OVER, rate=100.0)
+    way = [before]
+    while control.changing:
+        way.append(ticks(control, 1))
+        assert len(way) < 2000
+    rates = np.abs(np.diff(np.vstack(way), axis=0)) / control.dt
+    assert len(way) > 2 * TICKS
+    assert 50.0 < rates.max() <= 100.0 * (1.0 + TORQUE)
+
+
+def test_changes_under_way_share_the_rate():
+    control = Controller(ARM, held())
+    way = [ticks(control, 1)]
+    for target in (AWAY, HOME - 0.3, AWAY):
+        control.change(held(target), OVER, rate=100.0)
+        way.append(ticks(control, 10))
+    way.append(ticks(control, 2000))
+    rates = np.abs(np.diff(np.vstack(way), axis=0)) / control.dt
+    assert rates.max() <= 100.0 * (1.0 + TORQUE)
+    assert not control.changing
 
 
 @families
@@ -88,7 +115,7 @@ def test_without_a_ramp_it_jumps_at_once(resolver):
 def test_the_solution_tells_how_far_the_change_is():
     control = Controller(ARM, held())
     assert control(HOME, STILL).share == 1.0
-    control.change(held(AWAY), OVER)
+    control.change(held(AWAY), OVER, rate=FAST)
     shares = [control(HOME, STILL).share for _ in range(TICKS)]
     assert 0.0 < shares[0] < 1e-3
     assert (np.diff(shares) > 0.0).all()
@@ -97,7 +124,7 @@ def test_the_solution_tells_how_far_the_change_is():
 
 def test_the_blend_is_consistent_and_reports_on_the_new_tasks():
     control = Controller(ARM, held())
-    control.change(held(AWAY, "other"), OVER)
+    control.change(held(AWAY, "other"), OVER, rate=FAST)
     for _ in range(TICKS // 2):
         solution = control(HOME, STILL)
     state = ARM.state(HOME)
@@ -113,7 +140,7 @@ def test_a_change_during_a_change_starts_from_the_blend(resolver):
     control = Controller(ARM, held(), resolver)
     torques = [ticks(control, 2)]
     for target in (AWAY, HOME - 0.2, HOME + 0.1, AWAY):
-        control.change(held(target), OVER)
+        control.change(held(target), OVER, rate=FAST)
         torques.append(ticks(control, 13))
     torques.append(ticks(control, TICKS))
     way = np.vstack(torques)
@@ -129,7 +156,7 @@ def test_a_change_during_a_change_starts_from_the_blend(resolver):
 def test_beyond_three_changes_under_way_the_last_one_waits():
     control = Controller(ARM, held())
     for k in range(30):
-        control.change(held(HOME + 0.01 * k, f"number {k}"), OVER)
+        control.change(held(HOME + 0.01 * k, f"number {k}"), OVER, rate=FAST)
     for _ in range(2 * TICKS):
         solution = control(HOME, STILL)
     assert not control.changing
@@ -139,7 +166,7 @@ def test_beyond_three_changes_under_way_the_last_one_waits():
 
 def test_the_resolver_can_change_as_well():
     control = Controller(ARM, held())
-    control.change(held(), OVER, NullSpace("tsid"))
+    control.change(held(), OVER, NullSpace("tsid"), rate=FAST)
     before = ticks(control, TICKS)
     assert control.resolver.name == "nullspace:tsid"
     assert_allclose(before - before[0], 0.0, atol=TORQUE)
@@ -149,7 +176,7 @@ def test_limits_that_both_keep_are_kept_on_the_way():
     limits = TorqueLimits(0.3)
     control = Controller(ARM, limits >> Posture(AWAY, stiffness=1e4))
     control(HOME, STILL)
-    control.change(limits >> Posture(HOME - 1.0, stiffness=1e4), OVER)
+    control.change(limits >> Posture(HOME - 1.0, stiffness=1e4), OVER, rate=FAST)
     torques = ticks(control, TICKS)
     assert (np.abs(torques) <= 0.3 * ARM.tau_max * (1.0 + TORQUE)).all()
     assert (np.abs(torques) >= 0.29 * ARM.tau_max).any(), "the limits are at work"
@@ -160,7 +187,7 @@ def test_a_task_that_stays_on_top_is_met_on_the_way(resolver):
     tip = FramePosition("tip", ARM.state(HOME).frame("tip").p + 0.05)
     control = Controller(ARM, tip >> held() >> Damping(), resolver)
     control(HOME, STILL)
-    control.change(tip >> Damping(), OVER, resolver)
+    control.change(tip >> Damping(), OVER, resolver, rate=FAST)
     for _ in range(TICKS):
         residual = control(HOME, STILL).report(tip.name).residual
         assert_allclose(residual, 0.0, atol=SAME)
@@ -174,7 +201,7 @@ def test_an_old_hierarchy_that_fails_is_dropped():
     silent = Silent("silent", np.eye(1, ARM.nv), [0.0])
     control = Controller(ARM, silent >> held())
     assert control(HOME, STILL).status is Status.SOLVER_FAILED
-    control.change(held(AWAY), OVER)
+    control.change(held(AWAY), OVER, rate=FAST)
     assert control(HOME, STILL).ok
     assert not control.changing
     assert_allclose(
@@ -185,7 +212,7 @@ def test_an_old_hierarchy_that_fails_is_dropped():
 def test_a_new_hierarchy_that_fails_is_held_and_counted():
     broken = RawRows("broken", np.full((1, ARM.nv), np.nan), [0.0])
     control = Controller(ARM, held())
-    control.change(broken, OVER)
+    control.change(broken, OVER, rate=FAST)
     assert control(HOME, STILL).status is Status.SOLVER_FAILED
     assert control.failures == 1
 
@@ -210,7 +237,7 @@ def test_a_task_with_a_memory_moves_on_once_a_tick():
     counter = Counter("counter", "-")
     control = Controller(ARM, counter >> held())
     control(HOME, STILL)
-    control.change(held(AWAY) >> counter, OVER)
+    control.change(held(AWAY) >> counter, OVER, rate=FAST)
     ticks(control, TICKS // 2)
     assert counter.count == 1 + TICKS // 2
     torque = control(HOME, STILL).torque
@@ -223,6 +250,14 @@ def test_a_duration_that_is_none_is_refused(over):
     control = Controller(ARM, held())
     with pytest.raises(InputError, match="over must be"):
         control.change(held(AWAY), over)
+    assert not control.changing
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, np.nan, np.inf])
+def test_a_rate_that_is_none_is_refused(rate):
+    control = Controller(ARM, held())
+    with pytest.raises(InputError, match="rate must be"):
+        control.change(held(AWAY), rate=rate)
     assert not control.changing
 
 
@@ -261,7 +296,7 @@ def test_rate_limits_know_blends_and_fallbacks():
     held_torque = ARM.state(HOME).gravity()
     after = control(HOME, STILL).torque
     assert (np.abs(after - held_torque) <= 0.5 * (1.0 + TORQUE)).all()
-    control.change(TorqueRateLimits(500.0) >> held(AWAY), OVER)
+    control.change(TorqueRateLimits(500.0) >> held(AWAY), OVER, rate=FAST)
     way = np.vstack([after, ticks(control, 2 * TICKS)])
     assert (np.abs(np.diff(way, axis=0)) <= 0.5 * (1.0 + TORQUE)).all()
 
