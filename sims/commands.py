@@ -13,10 +13,12 @@ import numpy as np
 
 from sims.audit import audit
 from sims.benchmark import measure
+from sims.compare import cells
 from sims.compare.studies import STUDIES
 from sims.demo import Options, Outcome
-from sims.metrics import Metric, format_value, table, to_json, verdict
+from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
+from sims.report.datatable import as_text
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
@@ -72,35 +74,17 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
     demo, resolvers = find_demo(name), resolvers or list(COMPARED)
     outcomes: dict[str, Outcome] = {}
     for resolver in resolvers:
-        outcomes[resolver] = demo.run(replace(options, resolver=resolver))
+        chosen = replace(options, resolver=resolver)
+        outcomes[resolver] = cells.run_sampled(demo, chosen)
         if folder is not None:
             inner = _folder(str(folder / resolver.replace(":", "-")))
-            chosen = replace(options, resolver=resolver)
             _write(inner, f"{name} under {resolver}", chosen, outcomes[resolver])
-    print(_side_by_side({r: o.metrics for r, o in outcomes.items()}))
+    _, (names, *rows) = cells.side_by_side(name, outcomes)
+    print(as_text(("", [names, *rows])).lstrip("\n"))
+    if folder is not None:
+        cells.write(demo, outcomes, folder)
+        print(f"wrote report.html to {folder}")
     return 0
-
-
-def _side_by_side(columns: dict[str, list[Metric]]) -> str:
-    names = list(dict.fromkeys(m.name for metrics in columns.values() for m in metrics))
-    found = {r: {m.name: m for m in metrics} for r, metrics in columns.items()}
-    rows = [["metric", *columns, "bound"]]
-    for name in names:
-        cells, limit = [], ""
-        for metrics in found.values():
-            metric = metrics.get(name)
-            cells.append("-" if metric is None else _mark(metric))
-            limit = limit or ("" if metric is None else metric.limit)
-        rows.append([name, *cells, limit])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return "\n".join(
-        "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
-
-
-def _mark(metric: Metric) -> str:
-    return format_value(metric.value) + ("" if metric.holds else " FAIL")
 
 
 def bench(ticks: int) -> int:

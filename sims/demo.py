@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -65,8 +65,11 @@ class Demo:
         name: what it is called there.
         about: one line about it.
         run: options -> outcome.
+        compared: resolver -> outcome of each, into (caption, svg) pairs of the cell's
+            own that set them side by side; None for none.
     """
 
     name: str
     about: str
     run: Callable[[Options], Outcome]
+    compared: Callable[[Mapping[str, Outcome]], list[tuple[str, str]]] | None = None

@@ -123,8 +123,9 @@ class Controller:
             hierarchy: what is wanted from now on.
             over: duration [s]; 0 switches at once, with whatever jump that means.
             resolver: the resolver from now on; the present one by default.
-            rate: the change takes longer where it would move a torque faster than so
-                [Nm/s]; industrial arms stop at 1000 in all.
+            rate: the change takes longer where it would add more than so to a torque's
+                rate [Nm/s]; what a hierarchy does by itself comes on top, and
+                `tasks.TorqueRateLimits` bounds that, too.
 
         Raises:
             UnknownName, InputError: a task does not fit the robot, `over` is negative,

@@ -50,7 +50,8 @@ class Indicators:
     failed: bool
 
 
-FAILED = Indicators(*[np.nan] * 7, failed=True)
+NAN = float("nan")
+FAILED = Indicators(NAN, NAN, NAN, NAN, NAN, NAN, NAN, failed=True)
 
 
 def reference(problem: Problem) -> tuple[Array, float]:

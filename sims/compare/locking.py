@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from wbc.arrays import Array
+from wbc.arrays import Array, BoolArray, IntArray
 from wbc.linalg import recursion
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
@@ -56,7 +56,7 @@ class _Locking(Solver):
         done = np.array([sum(pair) for pair in zip(*[iter(ranks)] * 2, strict=True)])
         return Answer(stack.acceleration(y), done, Status.SOLVED)
 
-    def _blocks(self, side: Array, free: Array) -> list[tuple[Array, Array]]:
+    def _blocks(self, side: IntArray, free: BoolArray) -> list[tuple[Array, Array]]:
         """Locked bounds, then equalities, of every level."""
         stack = self._stack
         bound = np.where(side > 0, stack.upper, stack.lower)

@@ -48,6 +48,8 @@ def bars(study: Study) -> list[Metric]:
     for name in study.resolvers:
         key = _key(name)
         for limits, when in ((False, "free"), (True, "limits")):
+            if not study.of(name, limits=limits):
+                continue
             gap = study.worst("gap", name, limits=limits)
             metric = f"{key}_gap_{when}_relative"
             if name.startswith("hqp") or (name in STRICT and not limits):

@@ -114,8 +114,10 @@ def _words(found: Sequence[Passage]) -> str:
         + "\n".join(said)
         + "\n\nA ramp blends what the old and the new hierarchy want, and takes longer "
         "where they differ much; it asks nothing of the resolver, so both families "
-        "gain alike. A torque-rate limit in the hierarchy does without a ramp: it "
-        "follows the new tasks as fast as it may, all the time at its bound."
+        "gain alike. A torque-rate limit in the hierarchy bounds the rate whatever "
+        "happens, but it says nothing of the way: tasks that ask at once for what "
+        "comes late overshoot, as its figures show. So ramp changes, and keep the "
+        "limit for what nobody foresaw."
     )
 
 

@@ -94,7 +94,7 @@ class Study:
         ]
 
     def worst(self, indicator: str, resolver: str, limits: bool | None = None) -> float:
-        """Largest value of an indicator."""
+        """Largest value of an indicator; there must be such families."""
         found = [getattr(f, indicator) for f in self.of(resolver, limits=limits)]
         return float(np.max(found))
 
