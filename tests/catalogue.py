@@ -403,6 +403,9 @@ CATALOGUE: dict[type[Task], Entry] = {
     tasks.JointLocking: Entry("bounds", lambda s, g, z: Subject(tasks.JointLocking())),
     tasks.JointLimits: Entry("bounds", lambda s, g, z: Subject(tasks.JointLimits())),
     tasks.TorqueLimits: Entry("bounds", lambda s, g, z: Subject(tasks.TorqueLimits())),
+    tasks.TorqueRateLimits: Entry(
+        "bounds", lambda s, g, z: Subject(tasks.TorqueRateLimits())
+    ),
 }
 
 MOTION = {
