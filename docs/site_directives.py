@@ -58,7 +58,7 @@ class Table(SphinxDirective):
         return self.parse_text_to_nodes(text)
 
 
-def plain(app, what, name, item, options, lines: list[str]) -> None:  # noqa: PLR0913
+def plain(app, what, name, item, options, lines: list[str]) -> None:
     """Docstrings speak Markdown: literals in single backticks, bars that are bars."""
     del app, what, name, item, options
     for i, line in enumerate(lines):

@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 240.0, 180.0
 
 
 class Drawing:
-    """A drawing of 240 by 180; lengths in space are seen from one side.
+    """A drawing around the middle of 240 by 180; space is seen from one side.
 
     Args:
         centre: (3,) what is in the middle [m].
@@ -34,13 +34,15 @@ class Drawing:
         self._view = scale * np.array([right, up]) * [[1.0], [-1.0]]
         self._centre = np.array(centre, dtype=float)
         self._parts: list[str] = []
+        self._seen: list[np.ndarray] = []
 
     def at(self, p: Sequence[float]) -> np.ndarray:
         """Where a point (3,) of space is seen, (2,); points of the page stay."""
         p = np.asarray(p, dtype=float)
-        if p.size == 2:
-            return p
-        return self._view @ (p - self._centre) + [WIDTH / 2.0, HEIGHT / 2.0]
+        if p.size == 3:
+            p = self._view @ (p - self._centre) + [WIDTH / 2.0, HEIGHT / 2.0]
+        self._seen.append(p)
+        return p
 
     def line(
         self, points, colour: str = INK, width: float = 1.5, dash: str = "", fill="none"
@@ -101,10 +103,13 @@ class Drawing:
         )
 
     def svg(self, title: str) -> str:
-        """All of it."""
+        """All of it, with a margin."""
+        low, high = np.min(self._seen, axis=0) - 14.0, np.max(self._seen, axis=0) + 14.0
+        box = f"{low[0]:.0f} {low[1]:.0f} {high[0] - low[0]:.0f} {high[1] - low[1]:.0f}"
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} '
-            f'{HEIGHT:g}" role="img" aria-label="{title}"><title>{title}</title>'
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}" '
+            f'style="width:{(high[0] - low[0]) / 16.0:.1f}em" '
+            f'role="img" aria-label="{title}"><title>{title}</title>'
             f"{''.join(self._parts)}</svg>"
         )
 

@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from matplotlib.textpath import TextPath
 from sphinx.application import Sphinx
 
-SIZE = 12.5
+SIZE = 15.0
 """Of the letters, in units of which 16 are an em of the page."""
 LETTERS = {Path.MOVETO: "M", Path.LINETO: "L", Path.CURVE3: "Q", Path.CURVE4: "C"}
 

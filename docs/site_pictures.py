@@ -97,7 +97,8 @@ def _caption(tasks: list[Task]) -> str:
     sigma = np.linalg.svd(A, compute_uv=False)
     rank = int((sigma > 1e-9 * sigma[0]).sum())
     listed = ", ".join(f"{r} [{u}]" for r, u in zip(rows, units, strict=True))
-    return f"Rows: {listed}. Holds {rank} of the 6 freedoms of the tool, leaves {6 - rank}."
+    kept = f"holds {rank} of the 6 freedoms of the tool, leaves {6 - rank}"
+    return f"Rows: {listed}. It {kept}."
 
 
 def main(folder: str) -> None:

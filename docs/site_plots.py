@@ -11,6 +11,7 @@ import tasks
 from wbc import Robot, Rows, State, Task, allocate_rows
 
 Picture = tuple[str, str]
+ZIGZAG = (0, 1, -1, 1, -1, 1, -1, 1, 0)
 
 
 def _rows(task: Task, state: State) -> Rows:
@@ -170,8 +171,10 @@ def _spring(d: Drawing, a, b, colour: str) -> None:
     a, b = d.at(a), d.at(b)
     way = b - a
     across = np.array([-way[1], way[0]]) / np.linalg.norm(way) * 6.0
-    bends = [a + way * s + across * k for s, k in zip(
-        np.linspace(0.2, 0.8, 9), [0, 1, -1, 1, -1, 1, -1, 1, 0], strict=True)]  # fmt: skip
+    bends = [
+        a + way * s + across * k
+        for s, k in zip(np.linspace(0.2, 0.8, 9), ZIGZAG, strict=True)
+    ]
     d.line([a, *bends, b], colour, 1.5)
 
 

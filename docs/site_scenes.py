@@ -1,7 +1,7 @@
-"""What each task's picture shows: the features, and the task between them and the tool.
+"""What each task's picture shows: features, and the task between them and the tool.
 
-Each scene takes the tool's pose p (3,), R (3, 3) and gives the tasks and a function that
-draws the features.
+Each scene takes the tool's pose p (3,), R (3, 3) and gives the tasks and a function
+that draws the features.
 """
 
 from __future__ import annotations
