@@ -33,6 +33,13 @@ class Block(NamedTuple):
     text: str
 
 
+class Done(NamedTuple):
+    """What running a page came to."""
+
+    compared: int
+    started: list[str]
+
+
 def blocks_of(page: Path) -> list[Block]:
     return [Block(*found) for found in FENCE.findall(page.read_text(encoding="utf-8"))]
 
@@ -43,10 +50,10 @@ def commands_of(page: Path) -> list[list[str]]:
     return [line for line in words if line]
 
 
-def run_page(page: Path, folder: Path) -> int:
-    """Run all blocks in a folder, the current one; how many outputs were compared."""
+def run_page(page: Path, folder: Path) -> Done:
+    """Run all blocks in a folder, which is the current one."""
     namespace: dict = {"__name__": page.stem}
-    printed, compared, files = "", 0, set()
+    printed, compared, started, files = "", 0, [], set()
     blocks = blocks_of(page)
     for k, (kind, text) in enumerate(blocks):
         where = f"{page.name}, block {k + 1}"
@@ -60,10 +67,11 @@ def run_page(page: Path, folder: Path) -> int:
             for command in (line.split() for line in text.splitlines()):
                 if command[:1] == ["python"] and command[1] in files:
                     printed = _start(command[1:], folder)
+                    started.append(command[1])
         elif kind == "text" and k and blocks[k - 1].kind in ("python", "sh"):
             assert same(text, printed), f"{where}: it prints\n{printed}"
             compared += 1
-    return compared
+    return Done(compared, started)
 
 
 def _run(text: str, namespace: dict, where: str, *, may_fail: bool) -> str:
