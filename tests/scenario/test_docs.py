@@ -17,7 +17,7 @@ PAGES = sorted((ROOT / "docs").glob("*.md"))
 
 
 NEWCOMER = {"add_task": ["check.py", "compare.py"], "add_cell": ["compare_reach.py"]}
-"""Pages that a newcomer follows from an empty folder, and the programs started there."""
+"""Pages to follow from an empty folder, and the programs that are started there."""
 OTHERS = [page for page in PAGES if page.stem not in NEWCOMER]
 
 
