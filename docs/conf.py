@@ -28,7 +28,10 @@ myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
-autodoc_type_aliases = {"Array": "Array", "ArrayLike": "ArrayLike"}
+autodoc_type_aliases = {
+    name: name
+    for name in ("Array", "ArrayLike", "Carrier", "LawName", "Limit", "Metric", "Sense")
+}
 autodoc_preserve_defaults = True
 napoleon_use_ivar = True
 napoleon_use_rtype = False

@@ -15,6 +15,12 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 
+ALIASES = (
+    (r"TypeAliasForwardRef\('(\w+)'\)", r"\1"),
+    (r"~?pinocchio\.pinocchio_pywrap_default\.", "pin."),
+)
+
+
 class Exported(SphinxDirective):
     """Everything that a module lists in ``__all__``, with its docstrings."""
 
@@ -71,10 +77,29 @@ def plain(app, what, name, item, options, lines: list[str]) -> None:
         lines[i] = "".join(parts)
 
 
+def short(app, what, name, item, options, signature, returns):
+    """Signatures name an alias of a type as the source does."""
+    del app, what, name, item, options
+    if signature is None:  # a property, or data
+        return None
+    parts = [signature, returns or ""]
+    for pattern, word in ALIASES:
+        parts = [re.sub(pattern, word, text) for text in parts]
+    return parts[0], parts[1] or None
+
+
+def counted(app, what, name: str, item, skip: bool, options) -> bool | None:
+    """Fields of a named tuple are described by its class, not by their number."""
+    del app, what, name, skip, options
+    return (getattr(item, "__doc__", "") or "").startswith("Alias for field") or None
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Directives ``exported``, ``picture`` and ``table``."""
     app.add_directive("exported", Exported)
     app.add_directive("picture", Picture)
     app.add_directive("table", Table)
     app.connect("autodoc-process-docstring", plain, priority=100)
+    app.connect("autodoc-process-signature", short)
+    app.connect("autodoc-skip-member", counted)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
