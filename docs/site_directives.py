@@ -14,7 +14,6 @@ from docutils.statemachine import StringList
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-
 ALIASES = (
     (r"TypeAliasForwardRef\('(\w+)'\)", r"\1"),
     (r"~?pinocchio\.pinocchio_pywrap_default\.", "pin."),
