@@ -30,7 +30,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_type_aliases = {
     name: name
-    for name in ("Array", "ArrayLike", "Carrier", "LawName", "Limit", "Metric", "Sense")
+    for name in ("Array", "ArrayLike", "Carrier", "LawName", "Limit", "Sense")
 }
 autodoc_preserve_defaults = True
 napoleon_use_ivar = True
