@@ -51,15 +51,21 @@ def _parser() -> argparse.ArgumentParser:
     against = _add(
         commands,
         "compare",
-        "runs a cell under several resolvers, or its experiments",
+        "runs a cell, or a study, under several resolvers, or a cell's experiments",
         lambda a: compare(a.cell, a.resolvers, _options(a), a.out),
     )
-    against.add_argument("cell", metavar="CELL", help="see 'wbc list'")
+    against.add_argument(
+        "cell",
+        metavar="CELL",
+        help="see 'wbc list'; or 'random' for random stacks, 'transitions' for "
+        "changes of the hierarchy at run time",
+    )
     against.add_argument(
         "--resolvers",
         type=lambda text: text.split(","),
-        help="names with commas between; by default the cell's experiments, or hqp, "
-        "nullspace and weighted where it has none",
+        default=[],
+        help=f"names with commas between: {RESOLVERS}; by default a cell's "
+        "experiments, or hqp, nullspace and weighted where it has none",
     )
     _common(against)
     speed = _add(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -70,9 +70,12 @@ class Demo:
         about: one line about it.
         run: options -> outcome.
         experiments: their names, the default first; empty where there are none.
+        compared: resolver -> outcome of each, into (caption, svg) pairs of the cell's
+            own that set them side by side; None for none.
     """
 
     name: str
     about: str
     run: Callable[[Options], Outcome]
     experiments: tuple[str, ...] = ()
+    compared: Callable[[Mapping[str, Outcome]], list[tuple[str, str]]] | None = None

@@ -80,12 +80,20 @@ class Log:
             self.p[name][tick] = d.site_xpos[site]
             self.R[name][tick] = d.site_xmat[site].reshape(3, 3)
         if solution.ok:
-            self.ranks[tick] = solution.ranks
+            self._keep_ranks(tick, solution.ranks)
             for name, error in solution.error_norms():
-                self.errors[name][tick] = error
+                kept = self.errors.setdefault(name, np.full(self.t.size, np.nan))
+                kept[tick] = error
             for name in solution.active_rows():
                 self.active.setdefault(name, np.zeros(self.t.size, dtype=bool))
                 self.active[name][tick] = True
+
+    def _keep_ranks(self, tick: int, ranks: tuple[int, ...]) -> None:
+        """Another hierarchy may have more levels than the first one, or fewer."""
+        more = len(ranks) - self.ranks.shape[1]
+        if more > 0:
+            self.ranks = np.pad(self.ranks, ((0, 0), (0, more)))
+        self.ranks[tick, : len(ranks)] = ranks
 
     def trimmed(self) -> Log:
         """The same log without the ticks that did not happen."""

@@ -3,9 +3,10 @@
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
-`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`). `KnifePose` guides a blade against
-what it cuts; `Clearance` keeps two arms of one model apart.
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`), singularities
+(`SingularDamping`) and limits (`JointLimits`, `JointLocking`, `TorqueLimits`,
+`TorqueRateLimits`). `KnifePose` guides a blade against what it cuts; `Clearance` keeps
+two arms of one model apart.
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
@@ -42,10 +43,11 @@ from tasks.geometry import (
 )
 from tasks.impedance import Admittance, Impedance
 from tasks.knife import KnifePose
-from tasks.limits import JointLimits, TorqueLimits
+from tasks.limits import JointLimits, TorqueLimits, TorqueRateLimits
 from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
+from tasks.singular import SingularDamping
 
 __all__ = [
     "Admittance",
@@ -89,7 +91,9 @@ __all__ = [
     "PointOnPlane",
     "PointOnPoint",
     "Posture",
+    "SingularDamping",
     "TorqueLimits",
+    "TorqueRateLimits",
     "TravelSpeed",
     "rim_grasp",
 ]

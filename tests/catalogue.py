@@ -348,6 +348,12 @@ def _compliant(kind: type[tasks.Impedance] | type[tasks.Admittance]):
     return make
 
 
+def _singular(state: State, rng: Rng, aligned: bool) -> Subject:
+    """So wide a threshold that most directions are damped."""
+    goal = tasks.FramePosition(tip(state.robot), _near(state, rng, aligned))
+    return Subject(tasks.SingularDamping(goal, threshold=0.6))
+
+
 CATALOGUE: dict[type[Task], Entry] = {
     tasks.FramePosition: Entry("exact", _position),
     tasks.FrameOrientation: Entry("near zero", _orientation),
@@ -393,9 +399,13 @@ CATALOGUE: dict[type[Task], Entry] = {
     tasks.Clearance: Entry(
         "bounds", lambda s, g, z: Subject(tasks.Clearance(*s.robot.frames[-2:], 0.05))
     ),
+    tasks.SingularDamping: Entry("bounds", _singular),
     tasks.JointLocking: Entry("bounds", lambda s, g, z: Subject(tasks.JointLocking())),
     tasks.JointLimits: Entry("bounds", lambda s, g, z: Subject(tasks.JointLimits())),
     tasks.TorqueLimits: Entry("bounds", lambda s, g, z: Subject(tasks.TorqueLimits())),
+    tasks.TorqueRateLimits: Entry(
+        "bounds", lambda s, g, z: Subject(tasks.TorqueRateLimits())
+    ),
 }
 
 MOTION = {
