@@ -19,6 +19,8 @@ from typing import Any, Final, TypeVar, cast
 
 import numba
 
+from wbc.linking import KERNEL, PART
+
 __all__ = ["announce", "compiled", "inner", "python"]
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -62,22 +64,24 @@ CACHE: Final = _cache_folder()
 def compiled(function: Function) -> Function:
     """Compile a function at its first call, for the argument types of that call.
 
-    It may neither allocate nor return arrays, and calls only `inner` functions. Then
-    references to its arrays need no counting, which in small kernels is most of the
-    work. (Assigning an array to a slice of another allocates, in case they overlap.)
+    It may neither allocate nor return arrays. Then references to its arrays need no
+    counting, which in small kernels is most of the work. (Assigning an array to a slice
+    of another allocates, in case they overlap.) Others that call it take its code
+    as optimised on its own: a result does not depend on the door it came in by.
     """
-    return _compile(function, cache=CACHE is not None)
+    kernel: Any = _compile(function, {"cache": CACHE is not None})
+    within: Any = _compile(function, KERNEL)
+    kernel.get_call_template = within.get_call_template
+    kernel.get_overload = within.get_overload
+    return cast(Function, kernel)
 
 
 def inner(function: Function) -> Function:
     """Compile a function, under the same rules, that only compiled ones call.
 
-    It has no door for calls from Python, which for tuples of arrays is larger than
-    many a function behind it; what calls it keeps its code in the cache.
+    What calls it keeps its code in the cache.
     """
-    return _compile(
-        function, cache=False, no_cpython_wrapper=True, no_cfunc_wrapper=True
-    )
+    return _compile(function, PART)
 
 
 def python(function: Function) -> Function:
@@ -85,7 +89,7 @@ def python(function: Function) -> Function:
     return cast(Function, getattr(function, "py_func", function))
 
 
-def _compile(function: Function, **options: Any) -> Function:
+def _compile(function: Function, options: Mapping[str, Any]) -> Function:
     elsewhere = SETTINGS.CACHE_DIR
     SETTINGS.CACHE_DIR = elsewhere or str(CACHE or "")
     try:
