@@ -9,7 +9,7 @@ import pytest
 from robots import racer
 from sims import constraints
 from sims.constraints import hybrid, joint_limit, singular
-from sims.constraints.case import limits
+from sims.constraints.case import limits, posture_at
 from sims.constraints.chatter import travel
 from sims.constraints.follower import axes_along
 from sims.constraints.surface import NORMAL, PLANE, SURFACE, TIP
@@ -17,7 +17,7 @@ from sims.demo import Options
 from sims.registry import find_demo
 from sims.run import run
 from sims.wrist import WristSensor
-from tasks import Damping
+from tasks import Admittance, AxisAlignment, Damping, Impedance
 from wbc import PD, Controller
 
 ARM = racer.load("probe")
@@ -113,6 +113,41 @@ def test_the_bound_on_chatter_is_broken_by_a_goal_that_nothing_damps():
     load = log.torque / ARM.tau_max
     assert max(travel(x, singular.WINDOW) for x in load.T) > 1.5 * singular.TRAVEL
     assert np.abs(log.v / ARM.v_max).max() <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "mismatch", "short"),
+    [(Impedance, False, 0.05), (Admittance, False, 0.05), (Admittance, True, 0.5)],
+)
+def test_a_compliant_probe_without_a_spring_along_the_normal_presses_as_told(
+    kind, mismatch, short
+):
+    """On real contact; an impedance has no integral, so its model must be right."""
+    axes = axes_along(-NORMAL)
+    cell = constraints.cell(ARM, mismatch=mismatch)
+    q = posture_at(ARM, PLANE.point + 0.002 * NORMAL, -NORMAL)
+    cell.reset(q)
+    beside = [2000.0, 2000.0, 0.0]
+    soft = kind(
+        TIP,
+        ARM.state(q).frame(TIP).p,
+        mass=30.0,
+        stiffness=beside,
+        damping=[490.0, 490.0, 1500.0],
+        force=[0.0, 0.0, 20.0],
+        axes=axes,
+    )
+    upright = AxisAlignment(TIP, -NORMAL, stiffness=2500.0)
+    touch = []
+    log = run(
+        cell,
+        Controller(ARM, limits() >> soft >> upright >> Damping()),
+        1.5,
+        watch=lambda c, _: touch.append(float(c.data.sensor("touch").data[0])) or True,
+    )
+    assert max(touch) < 60.0
+    assert np.abs(np.array(touch)[-200:] - 20.0).max() < short
+    assert log.failures == 0
 
 
 def test_the_ways_of_the_elbow_differ_in_nothing_but_its_limit():
