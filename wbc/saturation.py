@@ -112,7 +112,7 @@ class Saturation(Solver):
     def _project(self, A: Array) -> tuple[Array, tuple[int, ...]]:
         n = A.shape[1]
         y, Z = np.zeros(n), np.eye(n)
-        ranks = [0] * len(self._stack.levels)
+        ranks, rest = [0] * len(self._stack.levels), self._rest()
         for level, rows, b in self._blocks():
             J = A[rows]
             scale = norm(J)
@@ -121,17 +121,25 @@ class Saturation(Solver):
                 y = y + Z @ factor.solve(b - J @ y)
             elif self._alone:
                 alone = factorise(J, scale, RANK_TOLERANCE)
-                y = y + Z @ (Z.T @ self._invert(alone, b, scale))
+                y = y + Z @ (Z.T @ self._invert(alone, b, scale, rest))
             else:
-                y = y + Z @ self._invert(factor, b - J @ y, scale)
+                y = y + Z @ self._invert(factor, b - J @ y, scale, Z.T @ (rest - y))
             Z = Z @ factor.V2
             ranks[level] += factor.rank
         return y, tuple(ranks)
 
-    def _invert(self, factor: Factor, b: Array, scale: float) -> Array:
+    def _invert(self, factor: Factor, b: Array, scale: float, rest: Array) -> Array:
         if self._damping is None:
             return factor.solve(b)
-        return self._damping.solve(factor, b, scale)
+        return self._damping.solve(factor, b, scale, rest)
+
+    def _rest(self) -> Array:
+        """What y would be if all motion were to die out at the rate of the damping."""
+        stack = self._stack
+        if self._damping is None:
+            return np.zeros(stack.v.size)
+        rest: Array = -self._damping.rate * stack.v
+        return np.array(np.linalg.solve(stack.L_inv.T, rest)) if self._kinetic else rest
 
     def _add_worst(self, A: Array, y: Array) -> bool:
         """Saturate the row that is violated most, relative to its norm."""

@@ -85,6 +85,7 @@ class Stack:
         M, h: inertia (n, n) and bias torques (n,) of the last state; h includes
             torques of the contact forces that tasks count on.
         L_inv: (n, n) inverse of the Cholesky factor of M.
+        v: (n,) joint velocities of the last state.
         tick: how often the rows were rewritten.
     """
 
@@ -130,7 +131,7 @@ class Stack:
         )
         self.lower, self.upper = self._bounds
         self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
-        self._M = self.M
+        self._M, self.v = self.M, np.zeros(n)
         self.weights, self._torque = np.ones(m), np.zeros(m)
         for term in self.terms:
             where = term.where
@@ -185,6 +186,7 @@ class Stack:
         return out, outcome == slots.SOLVED
 
     def _run(self, state: State, out: Array) -> int:
+        self.v = state.v
         if state is not self._state:
             self._bind(state)
         self.tick += 1

@@ -128,14 +128,14 @@ def _turned_back(trials: dict[str, Trial]) -> float:
 def figures(trials: dict[str, Trial]) -> list[tuple[str, str]]:
     """How singular each run gets, how far the goal is, and the torque beyond reach."""
     logs = {k.removeprefix("singular_"): trials[k].log for k in trials if _mine(k)}
-    last = max(logs.values(), key=lambda log: log.t.size)
+    last = logs["beyond"]
     t = last.t - last.t[0]
     values, errors = {}, {}
     for name, log in logs.items():
         ticks, values_at = weakness(trials[f"singular_{name}"])
         values[name] = np.interp(t, t[ticks], values_at, right=np.nan)
-        missing = np.full(t.size - log.t.size, np.nan)
-        errors[name] = np.append(log.errors["goal"], missing)
+        missing = np.full(max(t.size - log.t.size, 0), np.nan)
+        errors[name] = np.append(log.errors["goal"], missing)[: t.size]
     load = {
         joint: last.torque[:, i] / last.robot.tau_max[i]
         for i, joint in enumerate(last.robot.joint_names)

@@ -375,7 +375,7 @@ def test_an_unknown_law_is_refused_with_those_that_exist():
         NullSpace(law="osc")
 
 
-@pytest.mark.parametrize("name", ["threshold", "factor"])
+@pytest.mark.parametrize("name", ["threshold", "factor", "rate"])
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf, "much"])
 def test_damping_that_is_not_positive_is_refused(name, value):
     with pytest.raises(InputError, match=name):

@@ -8,8 +8,9 @@ import pytest
 
 from robots import racer
 from sims import constraints
-from sims.constraints import hybrid, joint_limit
+from sims.constraints import hybrid, joint_limit, singular
 from sims.constraints.case import limits, posture_at
+from sims.constraints.chatter import travel
 from sims.constraints.follower import axes_along
 from sims.constraints.surface import NORMAL, PLANE, SURFACE, TIP
 from sims.demo import Options
@@ -17,7 +18,7 @@ from sims.registry import find_demo
 from sims.run import run
 from sims.wrist import WristSensor
 from tasks import Admittance, AxisAlignment, Damping, Impedance
-from wbc import Controller
+from wbc import PD, Controller
 
 ARM = racer.load("probe")
 
@@ -44,6 +45,12 @@ def test_constraints_keep_every_bound(resolver, mismatch):
         "hybrid_normal_error_rad",
         "hybrid_contact_lost_fraction",
         "hybrid_impact_peak_n",
+        "singular_joint_speed_max_fraction",
+        "singular_torque_max_fraction",
+        "singular_torque_travel_fraction",
+        "singular_torque_reversals",
+        "singular_recovery_error_m",
+        "singular_unreported",
     } <= names
 
 
@@ -91,6 +98,21 @@ def test_searching_where_there_is_no_plate_stays_slow():
     speed = np.linalg.norm(np.diff(log.p[TIP], axis=0), axis=1) / 1e-3
     assert speed.max() < 1.3 * hybrid.APPROACH
     assert np.isnan(script.found)
+
+
+def test_the_bound_on_chatter_is_broken_by_a_goal_that_nothing_damps():
+    """To the goal beyond reach and back; the demo keeps the bound there."""
+    case = singular.cases(ARM)[-1]
+    cell = constraints.cell(ARM)
+    cell.model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    cell.reset(case.start)
+    stack, script = case.make(case.start, 0.0)
+    goal = next(task for task in stack.tasks() if task.name == "goal")
+    goal.law = PD(singular.STIFF)
+    log = run(cell, Controller(ARM, limits() >> goal >> Damping()), 6.0, script=script)
+    load = log.torque / ARM.tau_max
+    assert max(travel(x, singular.WINDOW) for x in load.T) > 1.5 * singular.TRAVEL
+    assert np.abs(log.v / ARM.v_max).max() <= 1.0
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from tests.tolerances import BY_HAND, ROUND_OFF, SOUND
 from wbc import (
     PD,
     Controller,
+    DampedInverse,
     Damper,
     HierarchicalQP,
     Hierarchy,
@@ -102,6 +103,43 @@ def test_levels_above_do_not_feel_it(resolver):
     scale = 1.0 + np.abs(got[0]).max()
     assert np.abs(got[1] - got[0]).max() / scale < SOUND
     assert np.abs(got[2] - got[0]).max() / scale < SOUND
+
+
+def test_a_damped_inverse_ends_at_rest_too():
+    """Against the normal equations, in coordinates where the inertia is one."""
+    goal, _, state = stretched(0.05, v=(0.3, -0.7))
+    L = np.linalg.cholesky(state.M)
+    J = np.linalg.solve(L, rows_of(goal, state).A.T).T
+    s, Vt = np.linalg.svd(J)[1:]
+    s = np.array([s[0], s[1]])
+    size = np.linalg.norm(J)
+    square = np.maximum(1.0 - (s / (0.1 * size)) ** 2, 0.0) * (0.05 * size) ** 2
+    assert square[1] > 0.0 == square[0]
+    D = Vt.T @ np.diag(square) @ Vt
+    rest = -20.0 * L.T @ state.v
+    b = rows_of(goal, state).upper
+    expected = np.linalg.solve(J.T @ J + D, J.T @ b + D @ rest)
+    damped = NullSpace(damping=DampedInverse(0.1, 0.05, rate=20.0))
+    found = L.T @ resolve(state, goal, damped).acceleration
+    np.testing.assert_allclose(found, expected, rtol=0, atol=BY_HAND)
+
+
+@pytest.mark.parametrize("law", ["wbcf", "tsid", "uf"])
+def test_a_damped_inverse_calms_an_arm_whose_goal_is_beyond_reach(law):
+    """Damped towards zero acceleration instead, it would swing on for seconds."""
+    speeds = []
+    for rate in (20.0, 1e-9):
+        goal, _, state = stretched(0.2)
+        resolver = NullSpace(law, DampedInverse(rate=rate))
+        controller = Controller(state.robot, goal, resolver, PERIOD)
+        q, v, last = state.q, state.v, []
+        for _ in range(2000):
+            v = v + PERIOD * controller(q, v).acceleration
+            q = q + PERIOD * v
+            last.append(np.abs(v).max())
+        speeds.append(max(last[-500:]))
+    assert speeds[0] < 1e-3
+    assert speeds[1] > 0.1
 
 
 def excursion(level, resolver):
