@@ -18,7 +18,7 @@ from sims.compare.studies import STUDIES
 from sims.demo import Options, Outcome
 from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
-from sims.report.datatable import as_text
+from sims.report.datatable import Table, as_text
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
@@ -73,16 +73,19 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
         return STUDIES[name](resolvers, options, folder)
     demo, resolvers = find_demo(name), resolvers or list(COMPARED)
     outcomes: dict[str, Outcome] = {}
+    regrets: list[Table] = []
     for resolver in resolvers:
         chosen = replace(options, resolver=resolver)
-        outcomes[resolver] = cells.run_sampled(demo, chosen)
+        outcomes[resolver], regret = cells.run_sampled(demo, chosen)
+        regrets.append(regret)
         if folder is not None:
             inner = _folder(str(folder / resolver.replace(":", "-")))
             _write(inner, f"{name} under {resolver}", chosen, outcomes[resolver])
     _, (names, *rows) = cells.side_by_side(name, outcomes)
     print(as_text(("", [names, *rows])).lstrip("\n"))
+    print(f"\n{as_text(regrets[0])}")
     if folder is not None:
-        cells.write(demo, outcomes, folder)
+        cells.write(demo, outcomes, regrets, folder)
         print(f"wrote report.html to {folder}")
     return 0
 

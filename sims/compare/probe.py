@@ -9,6 +9,7 @@ import numpy as np
 
 from sims.compare.indicators import Indicators, measure, reference
 from sims.compare.problems import Problem
+from sims.compare.regrets import Regrets
 from sims.metrics import Metric
 from wbc import Controller, Solution, SolverError
 from wbc.arrays import Array
@@ -27,10 +28,14 @@ class Sampler:
     Args:
         resolver: name; runs under others, which some cells bring along, are left out.
         seed: of the perturbations.
+
+    Attributes:
+        regrets: what strictness cost at the samples.
     """
 
     resolver: str
     seed: int = 0
+    regrets: Regrets = field(default_factory=Regrets)
     _found: list[Indicators] = field(default_factory=list)
     _last: tuple[Controller, Array] | None = None
     _rate: float = 0.0
@@ -57,6 +62,7 @@ class Sampler:
             best, _ = reference(problem)
         except SolverError:
             return  # without an optimum there is nothing to compare with
+        self.regrets.add(solution.cost_of_strictness())
         self._found.append(measure(problem, controller.resolver, best, rng))
 
     def metrics(self) -> list[Metric]:
