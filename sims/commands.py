@@ -15,7 +15,7 @@ from sims.audit import audit
 from sims.benchmark import measure
 from sims.compare import cells
 from sims.compare.studies import STUDIES
-from sims.demo import Options, Outcome
+from sims.demo import Demo, Options, Outcome
 from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
 from sims.report.datatable import Table, as_text
@@ -42,6 +42,8 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     """Run a cell, print its metrics, and write them where asked."""
     demo = find_demo(name)
     make_resolver(options.resolver)
+    if options.experiment and options.experiment not in demo.experiments:
+        raise UnknownName("experiment", options.experiment, demo.experiments)
     folder = None if out is None else _folder(out)
     began = time.perf_counter()
     outcome = demo.run(options)
@@ -53,11 +55,11 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
 
 
 def compare(name: str, resolvers: list[str], options: Options, out: str | None) -> int:
-    """Run a cell, or a study, under several resolvers, side by side.
+    """Run a cell, or a study, in several ways, side by side.
 
     Args:
         name: of a cell, "random" or "transitions".
-        resolvers: names; [] for a choice that suits.
+        resolvers: names; [] for a cell's experiments, or a choice that suits.
         options: for the runs.
         out: folder for reports.
 
@@ -71,16 +73,15 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
     folder = None if out is None else _folder(out)
     if name in STUDIES:
         return STUDIES[name](resolvers, options, folder)
-    demo, resolvers = find_demo(name), resolvers or list(COMPARED)
+    demo = find_demo(name)
     outcomes: dict[str, Outcome] = {}
     regrets: list[Table] = []
-    for resolver in resolvers:
-        chosen = replace(options, resolver=resolver)
-        outcomes[resolver], regret = cells.run_sampled(demo, chosen)
+    for way, chosen in _ways(demo, resolvers, options).items():
+        outcomes[way], regret = cells.run_sampled(demo, chosen, way)
         regrets.append(regret)
         if folder is not None:
-            inner = _folder(str(folder / resolver.replace(":", "-")))
-            _write(inner, f"{name} under {resolver}", chosen, outcomes[resolver])
+            inner = _folder(str(folder / way.replace(":", "-")))
+            _write(inner, f"{name} under {way}", chosen, outcomes[way])
     _, (names, *rows) = cells.side_by_side(name, outcomes)
     print(as_text(("", [names, *rows])).lstrip("\n"))
     print(f"\n{as_text(regrets[0])}")
@@ -88,6 +89,14 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
         cells.write(demo, outcomes, regrets, folder)
         print(f"wrote report.html to {folder}")
     return 0
+
+
+def _ways(demo: Demo, resolvers: list[str], options: Options) -> dict[str, Options]:
+    """What is set side by side: experiments, or resolvers."""
+    if not resolvers and demo.experiments:
+        return {name: replace(options, experiment=name) for name in demo.experiments}
+    names = resolvers or list(COMPARED)
+    return {name: replace(options, resolver=name) for name in names}
 
 
 def bench(ticks: int) -> int:

@@ -16,7 +16,7 @@ from sims.log import Log
 from wbc import Controller, InputError, Solution
 from wbc.arrays import Array
 
-__all__ = ["Probe", "Watcher", "probing", "run"]
+__all__ = ["CERTIFY_EVERY", "Bar", "Probe", "Watcher", "probing", "run"]
 
 CERTIFY_EVERY = 50
 """Ticks between two certificates, which cost more than a tick."""
@@ -88,10 +88,10 @@ def run(
         )
     ticks = max(1, round(duration / dt))
     log = Log(cell, controller, ticks, sites)
-    bar, probe = _Bar(label, ticks, quiet), _PROBE.get()
+    bar, probe = Bar(label, ticks, quiet), _PROBE.get()
     certify = controller.resolver.name.startswith("hqp")
     for tick in range(ticks):
-        began = time.perf_counter()
+        began = time.process_time()  # of the processor, whatever else it runs
         seen = cell.observe()
         if script is not None:
             script(seen.t)
@@ -101,7 +101,7 @@ def run(
         cell.apply(solution.torque)
         log.record(tick, seen, solution, after - before)
         cell.step()
-        log.spent += time.perf_counter() - began
+        log.spent += time.process_time() - began
         settled = solution.ok and solution.share == 1.0
         if certify and tick % CERTIFY_EVERY == 0 and settled:
             log.worst_certificate = max(
@@ -116,7 +116,7 @@ def run(
     return log.trimmed()
 
 
-class _Bar:
+class Bar:
     """A progress bar on a terminal; silent anywhere else."""
 
     def __init__(self, label: str, ticks: int, quiet: bool) -> None:
@@ -125,6 +125,7 @@ class _Bar:
         self._stride = max(1, ticks // 100)
 
     def show(self, tick: int) -> None:
+        """Draw it after so many ticks."""
         if self._on and (tick % self._stride == 0 or tick == self._ticks):
             share = tick / self._ticks
             filled = "█" * round(30 * share)
@@ -132,5 +133,6 @@ class _Bar:
             sys.stderr.flush()
 
     def close(self) -> None:
+        """End its line."""
         if self._on:
             sys.stderr.write("\n")

@@ -15,7 +15,7 @@ from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
 
-__all__ = ["CatalogueTask", "run_kernel"]
+__all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
 
 
 class CatalogueTask(MotionTask):
@@ -72,7 +72,7 @@ class CatalogueTask(MotionTask):
         """The task's frame, as seen from its second one if it has two."""
         n, flat = state.robot.nv, []
         for name in self.frames:
-            flat.append(_flat(state.frame(name), n))
+            flat.append(flat_frame(state.frame(name), n))
             if name == WORLD and self.moving is not None:
                 moved(self.moving, state.t, flat[-1])
         if len(flat) == 2:
@@ -106,7 +106,7 @@ def run_kernel(
     )
 
 
-def _flat(F: FrameState, n: int) -> Array:
+def flat_frame(F: FrameState, n: int) -> Array:
     """A frame as kernels lay it out."""
     flat = np.empty(frame_size(n))
     for target, source in zip(python(frame_at)(flat, n), F, strict=True):

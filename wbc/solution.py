@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
@@ -186,7 +187,8 @@ class Solution:
         """Name and norm of the error of every equality task, cheap enough for a log."""
         for term in self._fresh().terms:
             if isinstance(term.task, MotionTask):
-                yield term.task.name, float(np.linalg.norm(term.rows.error))
+                error = term.rows.error
+                yield term.task.name, math.sqrt(error @ error)
 
     def active_rows(self) -> list[str]:
         """Inequality rows at a bound or beyond it, as "level k: task: row"."""

@@ -111,11 +111,8 @@ class Stack:
     def _sort_out(self) -> None:
         """Tell tasks in plain Python, and those with a memory, from the others."""
         self._python = [term for term in self.terms if term.kernel is None]
-        self._advancing = [
-            term.task
-            for term in self._python
-            if type(term.task).advance is not Task.advance
-        ]
+        everyone = [term.task for term in self.terms]
+        self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
 
     def read_afresh(self) -> None:
         """Read gains and settings of the tasks again, at the next update."""

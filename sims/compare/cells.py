@@ -21,8 +21,13 @@ ROUND_OFF = 1e-16
 LEAK, GAP = "leak_max_relative", "optimality_gap_max_relative"
 
 
-def run_sampled(demo: Demo, options: Options) -> tuple[Outcome, Table]:
+def run_sampled(demo: Demo, options: Options, way: str) -> tuple[Outcome, Table]:
     """Run a cell, and add what was sampled along the way to its metrics.
+
+    Args:
+        demo: the cell.
+        options: of the run.
+        way: what the run is called, a resolver or an experiment.
 
     Returns:
         the outcome, and what strictness cost along the way.
@@ -31,7 +36,7 @@ def run_sampled(demo: Demo, options: Options) -> tuple[Outcome, Table]:
     with probing(sampler):
         outcome = demo.run(options)
     outcome = replace(outcome, metrics=[*outcome.metrics, *sampler.metrics()])
-    return outcome, sampler.regrets.table(options.resolver)
+    return outcome, sampler.regrets.table(way)
 
 
 def side_by_side(name: str, outcomes: Mapping[str, Outcome]) -> Table:

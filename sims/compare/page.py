@@ -131,7 +131,7 @@ def is_strict(name: str) -> bool:
 
 def key_of(name: str) -> str:
     """A resolver's name as part of a metric's."""
-    return name.replace(":", "_")
+    return name.replace(":", "_").replace(" ", "_")
 
 
 def _cell(column: str, value: float) -> str:
