@@ -142,9 +142,9 @@ class JointLimits(Task):
 
     The bounds are viable: whoever keeps them can always stop before the position
     limit, with the share `braking` of the acceleration limit (Del Prete 2018, RA-L
-    3(1), as corrected in section 8 of the facts; the form must match how the robot
-    moves between ticks). Outside a position limit they lead back in at a bounded
-    speed; they never ask for more than the acceleration limit.
+    3(1); the form must match how the robot moves between ticks). Outside a position
+    limit they lead back in at a bounded speed; they never ask for more than the
+    acceleration limit.
 
     Args:
         margin: distance kept from the position limits [rad or m].
