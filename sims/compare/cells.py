@@ -1,4 +1,4 @@
-"""`wbc compare CELL`: a cell under several resolvers, in numbers, figure and words."""
+"""`wbc compare CELL`: runs of a cell side by side, in numbers, figure and words."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def write(
     drawn = [] if demo.compared is None else demo.compared(outcomes)
     write_report(
         folder / "report.html",
-        title=f"{demo.name}: {demo.about}, under {len(outcomes)} resolvers",
+        title=f"{demo.name}: {demo.about}, side by side",
         summary=_words(outcomes),
         metrics=_judged(outcomes),
         figures=[*_figures(outcomes), *drawn],

@@ -37,7 +37,7 @@ class Sampler:
     seed: int = 0
     regrets: Regrets = field(default_factory=Regrets)
     _found: list[Indicators] = field(default_factory=list)
-    _last: tuple[Controller, Array] | None = None
+    _last: dict[int, Array] = field(default_factory=dict)
     _rate: float = 0.0
 
     def __call__(
@@ -46,10 +46,10 @@ class Sampler:
         """See a tick, before the controller is called again."""
         if controller.resolver.name != self.resolver:
             return
-        if self._last is not None and self._last[0] is controller and tick > 0:
-            change = float(np.abs(solution.torque - self._last[1]).max())
+        if tick > 0:
+            change = float(np.abs(solution.torque - self._last[id(controller)]).max())
             self._rate = max(self._rate, change / controller.dt)
-        self._last = controller, solution.torque
+        self._last[id(controller)] = solution.torque
         if tick % EVERY == 0 and solution.ok and solution.share == 1.0:
             self._sample(controller, solution, q, v)
 
