@@ -18,7 +18,7 @@ from sims.compare.studies import STUDIES
 from sims.demo import Demo, Options, Outcome
 from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
-from sims.report.datatable import as_text
+from sims.report.datatable import Table, as_text
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
@@ -75,15 +75,18 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
         return STUDIES[name](resolvers, options, folder)
     demo = find_demo(name)
     outcomes: dict[str, Outcome] = {}
+    regrets: list[Table] = []
     for way, chosen in _ways(demo, resolvers, options).items():
-        outcomes[way] = cells.run_sampled(demo, chosen)
+        outcomes[way], regret = cells.run_sampled(demo, chosen, way)
+        regrets.append(regret)
         if folder is not None:
             inner = _folder(str(folder / way.replace(":", "-")))
             _write(inner, f"{name} under {way}", chosen, outcomes[way])
     _, (names, *rows) = cells.side_by_side(name, outcomes)
     print(as_text(("", [names, *rows])).lstrip("\n"))
+    print(f"\n{as_text(regrets[0])}")
     if folder is not None:
-        cells.write(demo, outcomes, folder)
+        cells.write(demo, outcomes, regrets, folder)
         print(f"wrote report.html to {folder}")
     return 0
 

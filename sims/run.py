@@ -16,7 +16,15 @@ from sims.log import Log
 from wbc import Controller, InputError, Solution
 from wbc.arrays import Array
 
-__all__ = ["CERTIFY_EVERY", "Bar", "Probe", "Watcher", "probing", "run"]
+__all__ = [
+    "CERTIFY_EVERY",
+    "Bar",
+    "Probe",
+    "Watcher",
+    "current_probe",
+    "probing",
+    "run",
+]
 
 CERTIFY_EVERY = 50
 """Ticks between two certificates, which cost more than a tick."""
@@ -39,6 +47,11 @@ class Probe(Protocol):
 
 
 _PROBE: ContextVar[Probe | None] = ContextVar("probe", default=None)
+
+
+def current_probe() -> Probe | None:
+    """Who wants to see the present run, for cells with a loop of their own."""
+    return _PROBE.get()
 
 
 @contextmanager
@@ -88,7 +101,7 @@ def run(
         )
     ticks = max(1, round(duration / dt))
     log = Log(cell, controller, ticks, sites)
-    bar, probe = Bar(label, ticks, quiet), _PROBE.get()
+    bar, probe = Bar(label, ticks, quiet), current_probe()
     certify = controller.resolver.name.startswith("hqp")
     for tick in range(ticks):
         began = time.process_time()  # of the processor, whatever else it runs

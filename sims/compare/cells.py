@@ -1,12 +1,13 @@
-"""`wbc compare CELL`: a cell under several resolvers, in numbers, figure and words."""
+"""`wbc compare CELL`: runs of a cell side by side, in numbers, figure and words."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from sims.compare.figures import marks
+from sims.compare.page import SOUND, is_strict, key_of
 from sims.compare.probe import Sampler
 from sims.demo import Demo, Options, Outcome
 from sims.metrics import Metric, format_value
@@ -17,17 +18,25 @@ from sims.run import probing
 __all__ = ["run_sampled", "side_by_side", "write"]
 
 ROUND_OFF = 1e-16
-SOUND = 1e-8
-"""A leak or a gap below this is round-off."""
 LEAK, GAP = "leak_max_relative", "optimality_gap_max_relative"
 
 
-def run_sampled(demo: Demo, options: Options) -> Outcome:
-    """Run a cell, and add what was sampled along the way to its metrics."""
+def run_sampled(demo: Demo, options: Options, way: str) -> tuple[Outcome, Table]:
+    """Run a cell, and add what was sampled along the way to its metrics.
+
+    Args:
+        demo: the cell.
+        options: of the run.
+        way: what the run is called, a resolver or an experiment.
+
+    Returns:
+        the outcome, and what strictness cost along the way.
+    """
     sampler = Sampler(options.resolver, options.seed)
     with probing(sampler):
         outcome = demo.run(options)
-    return replace(outcome, metrics=[*outcome.metrics, *sampler.metrics()])
+    outcome = replace(outcome, metrics=[*outcome.metrics, *sampler.metrics()])
+    return outcome, sampler.regrets.table(way)
 
 
 def side_by_side(name: str, outcomes: Mapping[str, Outcome]) -> Table:
@@ -42,18 +51,31 @@ def side_by_side(name: str, outcomes: Mapping[str, Outcome]) -> Table:
     return f"{name} under {', '.join(outcomes)}", rows
 
 
-def write(demo: Demo, outcomes: Mapping[str, Outcome], folder: Path) -> None:
+def write(
+    demo: Demo,
+    outcomes: Mapping[str, Outcome],
+    regrets: Sequence[Table],
+    folder: Path,
+) -> None:
     """Write report.html of the comparison into a folder."""
     drawn = [] if demo.compared is None else demo.compared(outcomes)
     write_report(
         folder / "report.html",
-        title=f"{demo.name}: {demo.about}, under {len(outcomes)} resolvers",
+        title=f"{demo.name}: {demo.about}, side by side",
         summary=_words(outcomes),
-        metrics=[],
+        metrics=_judged(outcomes),
         figures=[*_figures(outcomes), *drawn],
         facts={r: f"{_folder(r)}/report.html" for r in outcomes},
-        data=[side_by_side(demo.name, outcomes)],
+        data=[side_by_side(demo.name, outcomes), *regrets],
     )
+
+
+def _judged(outcomes: Mapping[str, Outcome]) -> list[Metric]:
+    """Soundness, held against those that promise it."""
+    return [
+        Metric(f"{key_of(name)}_{LEAK}", leak, SOUND if is_strict(name) else None)
+        for name, leak in _values(outcomes, LEAK).items()
+    ]
 
 
 def _mark(metric: Metric | None) -> str:
@@ -106,5 +128,7 @@ def _words(outcomes: Mapping[str, Outcome]) -> str:
         + f"\n\nSound here: {', '.join(sound) or 'none'}. Optimal here: "
         f"{', '.join(optimal) or 'none'}. Bounds of the cell that do not hold: "
         f"{bounds}. A resolver can miss its optimum and still hold the cell's bounds: "
-        "where tasks hardly compete, all of them do the same."
+        "where tasks hardly compete, all of them do the same. What each level paid for "
+        "those above is in the tables of what strictness cost: alone is what it would "
+        "miss with none above it, got what it missed."
     )

@@ -15,7 +15,7 @@ from sims.metrics import Metric, to_json
 from sims.report.datatable import Table
 from sims.report.page import write_report
 
-__all__ = ["bars", "figures", "tables", "write"]
+__all__ = ["SOUND", "bars", "figures", "is_strict", "key_of", "tables", "write"]
 
 SOUND = 1e-8
 """A leak or a gap below this is round-off."""
@@ -42,11 +42,10 @@ def bars(study: Study) -> list[Metric]:
     """What the laws promise, held against what was measured."""
     judged = []
     for name in study.resolvers:
-        key, leak = _key(name), study.worst("leak", name)
-        strict = name in STRICT or name.startswith("hqp")
-        judged.append(Metric(f"{key}_leak_relative", leak, SOUND if strict else None))
+        leak, bound = study.worst("leak", name), SOUND if is_strict(name) else None
+        judged.append(Metric(f"{key_of(name)}_leak_relative", leak, bound))
     for name in study.resolvers:
-        key = _key(name)
+        key = key_of(name)
         for limits, when in ((False, "free"), (True, "limits")):
             if not study.of(name, limits=limits):
                 continue
@@ -125,9 +124,14 @@ def write(study: Study, folder: Path) -> None:
     )
 
 
-def _key(name: str) -> str:
+def is_strict(name: str) -> bool:
+    """Whether a resolver promises to be sound, limits or not."""
+    return name in STRICT or name.startswith("hqp")
+
+
+def key_of(name: str) -> str:
     """A resolver's name as part of a metric's."""
-    return name.replace(":", "_")
+    return name.replace(":", "_").replace(" ", "_")
 
 
 def _cell(column: str, value: float) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 
 from sims.compare.indicators import Indicators, measure, reference
 from sims.compare.problems import Problem
+from sims.compare.regrets import Regrets
 from sims.metrics import Metric
 from wbc import Controller, Solution, SolverError
 from wbc.arrays import Array
@@ -27,12 +28,16 @@ class Sampler:
     Args:
         resolver: name; runs under others, which some cells bring along, are left out.
         seed: of the perturbations.
+
+    Attributes:
+        regrets: what strictness cost at the samples.
     """
 
     resolver: str
     seed: int = 0
+    regrets: Regrets = field(default_factory=Regrets)
     _found: list[Indicators] = field(default_factory=list)
-    _last: tuple[Controller, Array] | None = None
+    _last: dict[int, Array] = field(default_factory=dict)
     _rate: float = 0.0
 
     def __call__(
@@ -41,10 +46,10 @@ class Sampler:
         """See a tick, before the controller is called again."""
         if controller.resolver.name != self.resolver:
             return
-        if self._last is not None and self._last[0] is controller and tick > 0:
-            change = float(np.abs(solution.torque - self._last[1]).max())
+        if tick > 0:
+            change = float(np.abs(solution.torque - self._last[id(controller)]).max())
             self._rate = max(self._rate, change / controller.dt)
-        self._last = controller, solution.torque
+        self._last[id(controller)] = solution.torque
         if tick % EVERY == 0 and solution.ok and solution.share == 1.0:
             self._sample(controller, solution, q, v)
 
@@ -57,6 +62,7 @@ class Sampler:
             best, _ = reference(problem)
         except SolverError:
             return  # without an optimum there is nothing to compare with
+        self.regrets.add(solution.cost_of_strictness())
         self._found.append(measure(problem, controller.resolver, best, rng))
 
     def metrics(self) -> list[Metric]:

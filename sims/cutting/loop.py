@@ -10,7 +10,7 @@ from sims.cutting.cell import CuttingCell
 from sims.cutting.job import Job
 from sims.cutting.record import Record
 from sims.log import Log
-from sims.run import CERTIFY_EVERY, Bar, Watcher
+from sims.run import CERTIFY_EVERY, Bar, Watcher, current_probe
 from wbc import Controller, Solution
 
 __all__ = ["Run", "run_job"]
@@ -47,7 +47,7 @@ def run_job(
     The measurements of `Record` and the certificates are not part of the cell and do
     not count in the time spent.
     """
-    dt = cell.model.opt.timestep
+    dt, probe = cell.model.opt.timestep, current_probe()
     ticks = max(1, round(longest / dt))
     logs = [
         Log(view, controller, ticks, (), world=False)
@@ -76,6 +76,11 @@ def run_job(
         spent += time.process_time() - began
         if tick % CERTIFY_EVERY == 0:
             _certify(logs, controllers, solutions)
+        if probe is not None:
+            for view, controller, solution in zip(
+                seen, controllers, solutions, strict=True
+            ):
+                probe(tick, controller, solution, view.q, view.v)
         if watch is not None and not watch(cell, solutions[0]):
             break
         if not goes_on:
