@@ -28,9 +28,11 @@ def _what(study: Study) -> str:
         f"{study.seed}, each resolved by {len(study.resolvers)} resolvers. Leak: what "
         "changes for a level when one below it wants something else. Gap: distance of "
         "a level from its lexicographic optimum. Both are relative, so 1 means as much "
-        "as was asked for. Optima are proven: the worst residual of their certificates "
-        f"is {study.proof:.0e}. Efforts are relative to the optimum's; a jump is what "
-        "stays of a step of the torque however finely it is divided, relative to "
+        "as was asked for. Optima come from a cascade of small QPs, which on "
+        "equalities is WBCF's own recursion (hence its exact zeros), and are proven: "
+        f"the worst residual of their certificates is {study.proof:.0e}. Efforts are "
+        "relative to the optimum's; a jump is what stays of a step of the torque "
+        "however finely it is divided, relative to "
         "|tau - h|."
     )
 
