@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from wbc.errors import ModelError
 
-__all__ = ["mount"]
+__all__ = ["add_section", "mount", "parse"]
 
 POSE = ("pos", "quat", "axisangle", "euler", "xyaxes", "zaxis")
 """Attributes that place a site or a body in its parent."""
@@ -35,7 +35,7 @@ def mount(arm_xml: str, tool_xml: str, at: str = "flange") -> str:
         ModelError: there is no such site, a name exists twice, or the tool says
             something about the whole model that the arm does not say.
     """
-    arm, tool = _parse(arm_xml, "arm"), _parse(tool_xml, "tool")
+    arm, tool = parse(arm_xml, "arm"), parse(tool_xml, "tool")
     body = _tool_body(tool)
     parent, site = _site(arm, at)
     _check_names(arm, tool)
@@ -47,7 +47,12 @@ def mount(arm_xml: str, tool_xml: str, at: str = "flange") -> str:
     return ET.tostring(arm, encoding="unicode")
 
 
-def _parse(text: str, what: str) -> ET.Element:
+def parse(text: str, what: str) -> ET.Element:
+    """Return the root element of an XML text.
+
+    Raises:
+        ModelError: the text is not well-formed.
+    """
     try:
         return ET.fromstring(text)
     except ET.ParseError as error:
@@ -102,13 +107,8 @@ def _merge_sections(arm: ET.Element, tool: ET.Element) -> None:
     for section in tool:
         if section.tag == "compiler":
             _check_compiler(arm, section)
-        elif section.tag in MERGED:
-            _check_defaults(section)
-            _section(arm, section.tag).extend(section)
         elif section.tag != "worldbody":
-            raise ModelError(
-                f"a tool cannot bring <{section.tag}>, only {', '.join(MERGED)}"
-            )
+            add_section(arm, section, "the tool")
 
 
 def _check_compiler(arm: ET.Element, compiler: ET.Element) -> None:
@@ -121,9 +121,19 @@ def _check_compiler(arm: ET.Element, compiler: ET.Element) -> None:
             )
 
 
-def _check_defaults(section: ET.Element) -> None:
+def add_section(model: ET.Element, section: ET.Element, whose: str) -> None:
+    """Append a section, such as <asset>, to the same section of another model.
+
+    Raises:
+        ModelError: the section speaks of the whole model.
+    """
+    if section.tag not in MERGED:
+        raise ModelError(
+            f"{whose} cannot bring <{section.tag}>, only {', '.join(MERGED)}"
+        )
     if section.tag == "default" and any(child.tag != "default" for child in section):
-        raise ModelError("the tool's defaults must be in classes, or they hit the arm")
+        raise ModelError(f"{whose}'s defaults must be in classes, or they hit the rest")
+    _section(model, section.tag).extend(section)
 
 
 def _section(arm: ET.Element, tag: str) -> ET.Element:

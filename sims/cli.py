@@ -45,19 +45,27 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("cell", metavar="CELL", help="see 'wbc list'")
     run.add_argument("--resolver", default="hqp", help=RESOLVERS)
+    run.add_argument("--experiment", default="", help="such as initial (cutting)")
     run.add_argument("--view", action="store_true", help="open a window")
     _common(run)
     against = _add(
         commands,
         "compare",
-        "runs a cell under several resolvers",
-        lambda a: compare(a.cell, a.resolvers.split(","), _options(a), a.out),
+        "runs a cell, or a study, under several resolvers, or a cell's experiments",
+        lambda a: compare(a.cell, a.resolvers, _options(a), a.out),
     )
-    against.add_argument("cell", metavar="CELL", help="see 'wbc list'")
+    against.add_argument(
+        "cell",
+        metavar="CELL",
+        help="see 'wbc list'; or 'random' for random stacks, 'transitions' for "
+        "changes of the hierarchy at run time",
+    )
     against.add_argument(
         "--resolvers",
-        default="hqp,nullspace,weighted",
-        help="names with commas between",
+        type=lambda text: text.split(","),
+        default=[],
+        help=f"names with commas between: {RESOLVERS}; by default a cell's "
+        "experiments, or hqp, nullspace and weighted where it has none",
     )
     _common(against)
     speed = _add(
@@ -96,6 +104,9 @@ def _common(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="simulate a robot that differs from the controller's model",
     )
+    command.add_argument(
+        "--combined", action="store_true", help="two arms under one hierarchy (cutting)"
+    )
     command.add_argument("--out", metavar="DIR", help="write metrics, log and report")
     command.add_argument("--quiet", action="store_true", help="no progress bar")
 
@@ -107,6 +118,8 @@ def _options(asked: argparse.Namespace) -> Options:
         seed=asked.seed,
         mismatch=asked.mismatch,
         view=getattr(asked, "view", False),
+        experiment=getattr(asked, "experiment", ""),
+        combined=asked.combined,
         quiet=asked.quiet,
     )
 

@@ -13,16 +13,21 @@ import numpy as np
 
 from sims.audit import audit
 from sims.benchmark import measure
-from sims.demo import Options, Outcome
-from sims.metrics import Metric, format_value, table, to_json, verdict
+from sims.compare import cells
+from sims.compare.studies import STUDIES
+from sims.demo import Demo, Options, Outcome
+from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
+from sims.report.datatable import as_text
 from sims.report.page import write_report
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
-from wbc import InputError
+from wbc import InputError, UnknownName
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
 
+COMPARED = ("hqp", "nullspace", "weighted")
+"""Resolvers of a cell, where none are named."""
 PACKAGES = ("wbc", "pin", "mujoco", "numba", "proxsuite", "qpsolvers", "numpy", "scipy")
 
 
@@ -37,6 +42,8 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     """Run a cell, print its metrics, and write them where asked."""
     demo = find_demo(name)
     make_resolver(options.resolver)
+    if options.experiment and options.experiment not in demo.experiments:
+        raise UnknownName("experiment", options.experiment, demo.experiments)
     folder = None if out is None else _folder(out)
     began = time.perf_counter()
     outcome = demo.run(options)
@@ -48,42 +55,45 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
 
 
 def compare(name: str, resolvers: list[str], options: Options, out: str | None) -> int:
-    """Run a cell under several resolvers and print their metrics side by side."""
-    demo = find_demo(name)
+    """Run a cell, or a study, in several ways, side by side.
+
+    Args:
+        name: of a cell, "random" or "transitions".
+        resolvers: names; [] for a cell's experiments, or a choice that suits.
+        options: for the runs.
+        out: folder for reports.
+
+    Raises:
+        UnknownName: there is no such cell or resolver.
+    """
+    if name not in (*STUDIES, *cell_names()):
+        raise UnknownName("cell or study", name, [*cell_names(), *STUDIES])
     for resolver in resolvers:
         make_resolver(resolver)
     folder = None if out is None else _folder(out)
+    if name in STUDIES:
+        return STUDIES[name](resolvers, options, folder)
+    demo = find_demo(name)
     outcomes: dict[str, Outcome] = {}
-    for resolver in resolvers:
-        outcomes[resolver] = demo.run(replace(options, resolver=resolver))
+    for way, chosen in _ways(demo, resolvers, options).items():
+        outcomes[way] = cells.run_sampled(demo, chosen)
         if folder is not None:
-            inner = _folder(str(folder / resolver.replace(":", "-")))
-            chosen = replace(options, resolver=resolver)
-            _write(inner, f"{name} under {resolver}", chosen, outcomes[resolver])
-    print(_side_by_side({r: o.metrics for r, o in outcomes.items()}))
+            inner = _folder(str(folder / way.replace(":", "-")))
+            _write(inner, f"{name} under {way}", chosen, outcomes[way])
+    _, (names, *rows) = cells.side_by_side(name, outcomes)
+    print(as_text(("", [names, *rows])).lstrip("\n"))
+    if folder is not None:
+        cells.write(demo, outcomes, folder)
+        print(f"wrote report.html to {folder}")
     return 0
 
 
-def _side_by_side(columns: dict[str, list[Metric]]) -> str:
-    names = list(dict.fromkeys(m.name for metrics in columns.values() for m in metrics))
-    found = {r: {m.name: m for m in metrics} for r, metrics in columns.items()}
-    rows = [["metric", *columns, "bound"]]
-    for name in names:
-        cells, limit = [], ""
-        for metrics in found.values():
-            metric = metrics.get(name)
-            cells.append("-" if metric is None else _mark(metric))
-            limit = limit or ("" if metric is None else metric.limit)
-        rows.append([name, *cells, limit])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return "\n".join(
-        "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
-
-
-def _mark(metric: Metric) -> str:
-    return format_value(metric.value) + ("" if metric.holds else " FAIL")
+def _ways(demo: Demo, resolvers: list[str], options: Options) -> dict[str, Options]:
+    """What is set side by side: experiments, or resolvers."""
+    if not resolvers and demo.experiments:
+        return {name: replace(options, experiment=name) for name in demo.experiments}
+    names = resolvers or list(COMPARED)
+    return {name: replace(options, resolver=name) for name in names}
 
 
 def bench(ticks: int) -> int:

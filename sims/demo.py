@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -24,6 +24,8 @@ class Options:
         mismatch: simulate a robot that differs from the controller's model.
         view: open a window while it runs.
         quiet: no progress bar.
+        experiment: which of the cell's experiments; "" for its first, or none.
+        combined: both arms of a cell under one hierarchy.
     """
 
     resolver: str = "hqp"
@@ -32,6 +34,8 @@ class Options:
     mismatch: bool = False
     view: bool = False
     quiet: bool = False
+    experiment: str = ""
+    combined: bool = False
 
 
 @final
@@ -65,8 +69,13 @@ class Demo:
         name: what it is called there.
         about: one line about it.
         run: options -> outcome.
+        experiments: their names, the default first; empty where there are none.
+        compared: resolver -> outcome of each, into (caption, svg) pairs of the cell's
+            own that set them side by side; None for none.
     """
 
     name: str
     about: str
     run: Callable[[Options], Outcome]
+    experiments: tuple[str, ...] = ()
+    compared: Callable[[Mapping[str, Outcome]], list[tuple[str, str]]] | None = None

@@ -26,27 +26,33 @@ class Log:
         t: (T,) time [s].
         q, v: (T, n) true positions and velocities [rad, rad/s].
         torque: (T, n) commanded torques [Nm].
-        qpos: (T, nq) of the whole simulated world.
+        qpos: (T, nq) of the whole simulated world; (T, 0) where it is not kept.
         errors: task name -> (T,) norm of its error, in the task's unit.
         active: "level k: task: row" -> (T,) whether that bound was active.
         wrenches: sensor name -> (T, 6) what the controller saw [N, Nm].
         ranks: (T, p) directions that each level could use.
         p, R: site name -> (T, 3) and (T, 3, 3) true poses.
         tick: (T,) time of the controller's call [s].
-        spent: wall-clock time of control and simulation [s], certificates not counted.
+        spent: processor time of control and simulation [s], certificates not counted.
         failures: ticks that fell back.
         worst_certificate: largest residual of the sampled certificates, NaN if none.
     """
 
     def __init__(
-        self, cell: Cell, controller: Controller, ticks: int, sites: tuple[str, ...]
+        self,
+        cell: Cell,
+        controller: Controller,
+        ticks: int,
+        sites: tuple[str, ...],
+        world: bool = True,
     ) -> None:
         n, tasks = cell.robot.nv, list(controller.hierarchy.tasks())
         self.robot, self._controller = cell.robot, controller
         self._cell, self._failed = cell, controller.failures
         self.t, self.tick = np.zeros(ticks), np.zeros(ticks)
         self.q, self.v, self.torque = (np.zeros((ticks, n)) for _ in range(3))
-        self.qpos = np.zeros((ticks, cell.model.nq))
+        self._world = world
+        self.qpos = np.zeros((ticks, cell.model.nq if world else 0))
         self.ranks = np.zeros((ticks, len(controller.hierarchy)), dtype=int)
         self.errors = {task.name: np.full(ticks, np.nan) for task in tasks}
         self.active: dict[str, Array] = {}
@@ -64,7 +70,9 @@ class Log:
         self.count = tick + 1
         self.t[tick], self.tick[tick] = seen.t, spent
         self.q[tick], self.v[tick] = self._cell.truth
-        self.qpos[tick], self.torque[tick] = d.qpos, solution.torque
+        self.torque[tick] = solution.torque
+        if self._world:
+            self.qpos[tick] = d.qpos
         for name, wrench in seen.wrenches.items():
             kept = self.wrenches.setdefault(name, np.zeros((self.t.size, 6)))
             kept[tick] = wrench
@@ -72,12 +80,20 @@ class Log:
             self.p[name][tick] = d.site_xpos[site]
             self.R[name][tick] = d.site_xmat[site].reshape(3, 3)
         if solution.ok:
-            self.ranks[tick] = solution.ranks
+            self._keep_ranks(tick, solution.ranks)
             for name, error in solution.error_norms():
-                self.errors[name][tick] = error
+                kept = self.errors.setdefault(name, np.full(self.t.size, np.nan))
+                kept[tick] = error
             for name in solution.active_rows():
                 self.active.setdefault(name, np.zeros(self.t.size, dtype=bool))
                 self.active[name][tick] = True
+
+    def _keep_ranks(self, tick: int, ranks: tuple[int, ...]) -> None:
+        """Another hierarchy may have more levels than the first one, or fewer."""
+        more = len(ranks) - self.ranks.shape[1]
+        if more > 0:
+            self.ranks = np.pad(self.ranks, ((0, 0), (0, more)))
+        self.ranks[tick, : len(ranks)] = ranks
 
     def trimmed(self) -> Log:
         """The same log without the ticks that did not happen."""

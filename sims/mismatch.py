@@ -8,7 +8,7 @@ from typing import final
 import mujoco
 import numpy as np
 
-from wbc.arrays import Array
+from wbc.arrays import Array, BoolArray
 
 __all__ = ["Mismatch"]
 
@@ -35,11 +35,21 @@ class Mismatch:
     def apply(self, model: mujoco.MjModel, dofs: Array, tau_max: Array) -> None:
         """Change the simulated model, in place; the controller's is not touched."""
         rng = np.random.default_rng(self.seed)
-        factor = 1.0 + rng.uniform(-self.mass, self.mass, model.nbody)
+        moved = _carried_by(model, dofs)
+        factor = 1.0 + moved * rng.uniform(-self.mass, self.mass, model.nbody)
         model.body_mass *= factor
         model.body_inertia *= factor[:, None]
         shift = rng.uniform(-self.offset, self.offset, (model.nbody, 3))
-        model.body_ipos += shift * (model.body_mass > 0.0)[:, None]
+        model.body_ipos += shift * (moved & (model.body_mass > 0.0))[:, None]
         model.dof_frictionloss[dofs] = self.coulomb * tau_max
         model.dof_damping[dofs] = self.viscous * tau_max
         mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def _carried_by(model: mujoco.MjModel, dofs: Array) -> BoolArray:
+    """Bodies (nbody,) that move with these degrees of freedom: the robot's own."""
+    carried = np.zeros(model.nbody, dtype=bool)
+    carried[model.dof_bodyid[dofs]] = True
+    for body in range(1, model.nbody):  # parents come before children
+        carried[body] |= carried[model.body_parentid[body]]
+    return carried

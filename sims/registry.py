@@ -10,8 +10,11 @@ from wbc import UnknownName
 __all__ = ["cell_names", "find_demo"]
 
 MODULES = {
+    "cutting": "sims.cutting.demo",
     "welding": "sims.welding.demo",
     "constraints": "sims.constraints.demo",
+    "grasping": "sims.grasping.demo",
+    "contact": "sims.contact.demo",
 }
 
 

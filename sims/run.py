@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Protocol
 
 import numpy as np
@@ -12,8 +14,9 @@ import numpy as np
 from sims.cell import Cell
 from sims.log import Log
 from wbc import Controller, InputError, Solution
+from wbc.arrays import Array
 
-__all__ = ["Watcher", "run"]
+__all__ = ["CERTIFY_EVERY", "Bar", "Probe", "Watcher", "probing", "run"]
 
 CERTIFY_EVERY = 50
 """Ticks between two certificates, which cost more than a tick."""
@@ -24,6 +27,28 @@ class Watcher(Protocol):
 
     def __call__(self, cell: Cell, solution: Solution) -> bool:
         """See a tick; false ends the run."""
+
+
+class Probe(Protocol):
+    """Something that studies the ticks of all runs, whoever starts them."""
+
+    def __call__(
+        self, tick: int, controller: Controller, solution: Solution, q: Array, v: Array
+    ) -> None:
+        """See a tick, at the measured q (n,) and v (n,)."""
+
+
+_PROBE: ContextVar[Probe | None] = ContextVar("probe", default=None)
+
+
+@contextmanager
+def probing(probe: Probe) -> Iterator[None]:
+    """Let a probe see every tick of the runs within."""
+    token = _PROBE.set(probe)
+    try:
+        yield
+    finally:
+        _PROBE.reset(token)
 
 
 def run(
@@ -63,10 +88,10 @@ def run(
         )
     ticks = max(1, round(duration / dt))
     log = Log(cell, controller, ticks, sites)
-    bar = _Bar(label, ticks, quiet)
+    bar, probe = Bar(label, ticks, quiet), _PROBE.get()
     certify = controller.resolver.name.startswith("hqp")
     for tick in range(ticks):
-        began = time.perf_counter()
+        began = time.process_time()  # of the processor, whatever else it runs
         seen = cell.observe()
         if script is not None:
             script(seen.t)
@@ -76,11 +101,14 @@ def run(
         cell.apply(solution.torque)
         log.record(tick, seen, solution, after - before)
         cell.step()
-        log.spent += time.perf_counter() - began
-        if certify and tick % CERTIFY_EVERY == 0 and solution.ok:
+        log.spent += time.process_time() - began
+        settled = solution.ok and solution.share == 1.0
+        if certify and tick % CERTIFY_EVERY == 0 and settled:
             log.worst_certificate = max(
                 log.worst_certificate, solution.certificate().worst
             )
+        if probe is not None:
+            probe(tick, controller, solution, seen.q, seen.v)
         if watch is not None and not watch(cell, solution):
             break
         bar.show(tick + 1)
@@ -88,7 +116,7 @@ def run(
     return log.trimmed()
 
 
-class _Bar:
+class Bar:
     """A progress bar on a terminal; silent anywhere else."""
 
     def __init__(self, label: str, ticks: int, quiet: bool) -> None:
@@ -97,6 +125,7 @@ class _Bar:
         self._stride = max(1, ticks // 100)
 
     def show(self, tick: int) -> None:
+        """Draw it after so many ticks."""
         if self._on and (tick % self._stride == 0 or tick == self._ticks):
             share = tick / self._ticks
             filled = "█" * round(30 * share)
@@ -104,5 +133,6 @@ class _Bar:
             sys.stderr.flush()
 
     def close(self) -> None:
+        """End its line."""
         if self._on:
             sys.stderr.write("\n")

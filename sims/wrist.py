@@ -9,6 +9,7 @@ import numpy as np
 
 from wbc import InputError, UnknownName
 from wbc.arrays import Array, positive
+from wbc.compiled import compiled
 
 __all__ = ["WristSensor"]
 
@@ -97,7 +98,10 @@ class WristSensor:
                 "between a body without joints and its parent."
             )
         self._dt = model.opt.timestep
-        self._mass, self._centre, self._inertia = _tool(model, body, self._id)
+        self._mass, self._first, self._second = _tool(model, body, self._id)
+        start = int(model.sensor(self._part("force")).adr[0])
+        self._scratch = np.empty((6, 6))
+        self._where = slice(start, start + 3 * len(PARTS))  # mounted in a row
 
     def reset(self, data: mujoco.MjData) -> None:
         """Start bias, noise and filter again; the arm must be at rest and held."""
@@ -128,25 +132,10 @@ class WristSensor:
         The engine's acceleration of a frame is a - g already.
         """
         R = data.site_xmat[self._id].reshape(3, 3)
-        a, alpha = (
-            self._data(data, "linear acceleration"),
-            self._data(data, "angular acceleration"),
-        )
-        omega = self._data(data, "angular velocity")
-        c, I_W = R @ self._centre, R @ self._inertia @ R.T
-        at_centre = a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c))
-        force = self._mass * at_centre
-        spin = I_W @ alpha + np.cross(omega, I_W @ omega)
-        moment = np.cross(c, force) + spin
-        return np.concatenate(
-            [
-                R @ self._data(data, "force") - force,
-                R @ self._data(data, "torque") - moment,
-            ]
-        )
-
-    def _data(self, data: mujoco.MjData, part: str) -> Array:
-        return np.array(data.sensor(self._part(part)).data)
+        feel = data.sensordata[self._where]
+        wrench, tool = np.empty(6), (self._mass, self._first, self._second)
+        _exerted(R, feel, *tool, self._scratch, wrench)
+        return wrench
 
     def _part(self, part: str) -> str:
         return f"{self.name} {part}"
@@ -159,24 +148,76 @@ def _both(force: float, torque: float, what: str) -> Array:
     return np.repeat([force, torque], 3)
 
 
-def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
-    """Mass, centre (3,) and inertia about it (3, 3) of a body and all it carries.
+@compiled
+def _exerted(
+    R: Array,
+    feel: Array,
+    mass: float,
+    first: Array,
+    second: Array,
+    scratch: Array,
+    out: Array,
+) -> None:
+    """Wrench on the surroundings, world axes.
 
-    In the axes of the site, at the posture of the compiled scene.
+    Args:
+        R: (3, 3) orientation of the site.
+        feel: (15,) what the engine reads there, in the order of `PARTS`: force and
+            torque in the site's axes, the others in the world's.
+        mass: of the tool.
+        first: (3,) its first moments about the site, in the site's axes.
+        second: (3, 3) its second moments.
+        scratch: (6, 6) numbers on the way.
+        out: (6,) is written.
+    """
+    local, own = scratch[:3, :3], scratch[3]  # a, alpha, omega in the site's axes
+    for part in range(3):
+        for i in range(3):
+            local[part, i] = 0.0
+            for j in range(3):
+                local[part, i] += R[j, i] * feel[6 + 3 * part + j]
+    a, alpha, w = local[0], local[1], local[2]
+    B, T = scratch[:3, 3:], scratch[4, :3]  # a point at r accelerates by a + B r
+    for i in range(3):
+        for j in range(3):
+            B[i, j] = w[i] * w[j]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        B[i, i] = -(w[j] * w[j] + w[k] * w[k])
+        B[k, j] += alpha[i]
+        B[j, k] -= alpha[i]
+    for i in range(3):
+        own[i] = feel[i] - mass * a[i]
+        for j in range(3):
+            own[i] -= B[i, j] * first[j]
+        j, k = (i + 1) % 3, (i + 2) % 3
+        T[i] = a[k] * first[j] - a[j] * first[k]
+        for n in range(3):
+            T[i] += B[k, n] * second[n, j] - B[j, n] * second[n, k]
+        own[3 + i] = feel[3 + i] - T[i]
+    for i in range(3):
+        out[i] = R[i, 0] * own[0] + R[i, 1] * own[1] + R[i, 2] * own[2]
+        out[3 + i] = R[i, 0] * own[3] + R[i, 1] * own[4] + R[i, 2] * own[5]
+
+
+def _tool(model: mujoco.MjModel, body: int, site: int) -> tuple[float, Array, Array]:
+    """Mass, first (3,) and second moments (3, 3) of a body and all it carries.
+
+    About the site and in its axes, at the posture of the compiled scene: the integrals
+    of 1, r and r r^T over the mass.
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     p, R = data.site_xpos[site], data.site_xmat[site].reshape(3, 3)
+    first, second = np.zeros(3), np.zeros((3, 3))
     carried = [b for b in range(model.nbody) if _carries(model, body, b)]
-    m = model.body_mass[carried]
-    points = (data.xipos[carried] - p) @ R
-    centre = m @ points / max(float(m.sum()), 1e-12)
-    inertia = np.zeros((3, 3))
-    for b, mass, r in zip(carried, m, points - centre, strict=True):
+    for b in carried:
+        mass, r = model.body_mass[b], (data.xipos[b] - p) @ R
         turn = R.T @ data.ximat[b].reshape(3, 3)
-        inertia += turn @ np.diag(model.body_inertia[b]) @ turn.T
-        inertia += mass * (r @ r * np.eye(3) - np.outer(r, r))
-    return float(m.sum()), centre, inertia
+        inertia = turn @ np.diag(model.body_inertia[b]) @ turn.T
+        first += mass * r
+        second += 0.5 * np.trace(inertia) * np.eye(3) - inertia + mass * np.outer(r, r)
+    return float(model.body_mass[carried].sum()), first, second
 
 
 def _carries(model: mujoco.MjModel, body: int, other: int) -> bool:

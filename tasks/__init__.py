@@ -3,12 +3,15 @@
 Poses (`FramePose`, `FramePosition`, `FrameOrientation`), geometric constraints
 (`tasks.geometry` lists them all), axes (`AxisAlignment`, `AxisAlongPath`), motion along
 paths (`PointOnCurve`, `TravelSpeed`), contact (`HybridForceMotion`, `Impedance`,
-`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`) and limits
-(`JointLimits`, `JointLocking`, `TorqueLimits`).
+`Admittance`, with a `ForceLaw`), joint space (`Posture`, `Damping`), singularities
+(`SingularDamping`) and limits (`JointLimits`, `JointLocking`, `TorqueLimits`,
+`TorqueRateLimits`). `KnifePose` guides a blade against what it cuts; `Clearance` keeps
+two arms of one model apart.
 """
 
 from tasks.along import PointOnCurve, TravelSpeed
 from tasks.axis import AxisAlignment, AxisAlongPath
+from tasks.clearance import Clearance
 from tasks.curve import Curve
 from tasks.force import HybridForceMotion
 from tasks.forcelaw import ForceLaw
@@ -39,10 +42,12 @@ from tasks.geometry import (
     rim_grasp,
 )
 from tasks.impedance import Admittance, Impedance
-from tasks.limits import JointLimits, TorqueLimits
+from tasks.knife import KnifePose
+from tasks.limits import JointLimits, TorqueLimits, TorqueRateLimits
 from tasks.locking import JointLocking
 from tasks.path import Path, PathPoint
 from tasks.posture import Damping, Posture
+from tasks.singular import SingularDamping
 
 __all__ = [
     "Admittance",
@@ -50,6 +55,7 @@ __all__ = [
     "AxisAlignment",
     "AxisAlongPath",
     "Circle",
+    "Clearance",
     "Curve",
     "Cylinder",
     "Damping",
@@ -65,6 +71,7 @@ __all__ = [
     "Impedance",
     "JointLimits",
     "JointLocking",
+    "KnifePose",
     "Line",
     "LineInPlane",
     "LineOnLine",
@@ -84,7 +91,9 @@ __all__ = [
     "PointOnPlane",
     "PointOnPoint",
     "Posture",
+    "SingularDamping",
     "TorqueLimits",
+    "TorqueRateLimits",
     "TravelSpeed",
     "rim_grasp",
 ]

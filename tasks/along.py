@@ -12,6 +12,7 @@ from tasks.evaluator import Code
 from tasks.path import Path, still
 from wbc import PD, Damper, Robot
 from wbc.arrays import Array, frozen, positive
+from wbc.binding import announce
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -102,7 +103,8 @@ class TravelSpeed(CatalogueTask):
     ) -> None:
         law = Damper(positive(gain, "gain"))
         super().__init__(name or f"{frame} speed", "m/s", ("along",), law, (frame,))
-        self.path, self.speed = still(path, self.name), positive(speed, "speed")
+        self.path = still(path, self.name)
+        self.speed = speed
         self.ramp = positive(ramp, "ramp")
         self.start = float(frozen(start, (), "start"))
         self.end = path.length if end is None else positive(end, "end")
@@ -111,6 +113,20 @@ class TravelSpeed(CatalogueTask):
                 f"'{self.name}' should stop at {self.end} m, but its path ends at "
                 f"{path.length:.6g} m."
             )
+
+    @property
+    def speed(self) -> float:
+        """Along the path [m/s]; may be changed on the way.
+
+        Raises:
+            InputError: when set, not a number greater than 0; it stays as it was.
+        """
+        return self._speed
+
+    @speed.setter
+    def speed(self, speed: float) -> None:
+        self._speed = positive(speed, "speed")
+        announce(self)
 
     def parameters(self, robot: Robot) -> Array:
         """Speed, ramp, start, end (4,)."""

@@ -9,12 +9,13 @@ import numpy as np
 from tasks.evaluator import SCRATCH, Code, evaluate, run
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
+from wbc.binding import refuse_in_use
 from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
 
-__all__ = ["CatalogueTask", "run_kernel"]
+__all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
 
 
 class CatalogueTask(MotionTask):
@@ -27,6 +28,10 @@ class CatalogueTask(MotionTask):
     code: Code
     moving: Array | None = None
     """A frame that moves by itself, in the place of the world among the frames."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        refuse_in_use(self, name)
+        super().__setattr__(name, value)
 
     @abstractmethod
     def parameters(self, robot: Robot) -> Array:
@@ -67,7 +72,7 @@ class CatalogueTask(MotionTask):
         """The task's frame, as seen from its second one if it has two."""
         n, flat = state.robot.nv, []
         for name in self.frames:
-            flat.append(_flat(state.frame(name), n))
+            flat.append(flat_frame(state.frame(name), n))
             if name == WORLD and self.moving is not None:
                 moved(self.moving, state.t, flat[-1])
         if len(flat) == 2:
@@ -101,7 +106,7 @@ def run_kernel(
     )
 
 
-def _flat(F: FrameState, n: int) -> Array:
+def flat_frame(F: FrameState, n: int) -> Array:
     """A frame as kernels lay it out."""
     flat = np.empty(frame_size(n))
     for target, source in zip(python(frame_at)(flat, n), F, strict=True):

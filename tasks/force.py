@@ -174,6 +174,12 @@ class HybridForceMotion(TouchTask):
                     "give one number, or one a row."
                 )
 
+    def row_units(self, rows: int) -> tuple[str, ...]:
+        """Metres and radians where it moves, newtons and newton metres where not."""
+        kinds = (("m", "N"), ("rad", "Nm"))
+        pressed = self._S.astype(int)
+        return tuple(kinds[i // 3][pressed[i]] for i in range(rows))
+
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
         F = self._kinematics(state, rows)

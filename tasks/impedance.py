@@ -86,7 +86,8 @@ class Impedance(_Compliant):
     Md (xdd - xdd_d) + Kd (xd - xd_d) + Kp (x - x_d) = h_d - h with h the measured force
     of the robot on its surroundings: P0 eq. (20), mended. Its J^T h is added to the
     torques, without which the surroundings would be felt twice. Where h_d should be
-    exerted exactly, Kp must be 0.
+    exerted exactly, Kp must be 0. Against stiff surroundings Md must not be far below
+    the robot's own mass at F, or the sensor's delay makes it ring.
 
     Args:
         frame: name of the robot's frame.
@@ -144,7 +145,8 @@ class Admittance(_Compliant):
 
     The reference x_c obeys the impedance's equation and is integrated once a tick; a
     stiff PD follows it. Rather than by torques the robot complies by moving, which
-    suits arms with much friction; it must not be faster than the PD.
+    suits arms with much friction; it must not be faster than the PD. Light masses ring
+    as those of `Impedance` do.
 
     Args:
         frame: name of the robot's frame.

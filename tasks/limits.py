@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Literal, TypeAlias, final, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from tasks.base import run_kernel
 from tasks.evaluator import Code, run
 from wbc import Kernel, Robot, Rows, State, Task, UnknownName
-from wbc.arrays import positive
+from wbc.arrays import Array, per_row, positive
+from wbc.binding import announce, refuse_in_use
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
-__all__ = ["JointLimits", "TorqueLimits"]
+__all__ = ["JointLimits", "TorqueLimits", "TorqueRateLimits"]
 
 Integrator: TypeAlias = Literal["semi-implicit", "exact"]
 
@@ -34,9 +36,23 @@ class TorqueLimits(Task):
 
     def __init__(self, fraction: float = 1.0, *, name: str = "torque limits") -> None:
         super().__init__(name, "Nm")
-        self.fraction = positive(fraction, "fraction")
-        if self.fraction > 1.0:
+        self.fraction = fraction
+
+    @property
+    def fraction(self) -> float:
+        """Share of the robot's limits that may be used; may be changed on the way.
+
+        Raises:
+            InputError: when set, not greater than 0, or above 1; it stays as it was.
+        """
+        return self._fraction
+
+    @fraction.setter
+    def fraction(self, fraction: float) -> None:
+        if positive(fraction, "fraction") > 1.0:
             raise InputError("fraction is a share of the torque limits, at most 1.")
+        self._fraction = float(fraction)
+        announce(self)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -51,6 +67,73 @@ class TorqueLimits(Task):
         """Write the rows."""
         p = self.kernel(state.robot).parameters
         run_kernel(Code.TORQUE_BOUNDS, p, NO_TABLE, None, state, rows)
+
+
+@final
+class TorqueRateLimits(Task):
+    """|tau - tau_before| <= rate dt, one row a joint [Nm or N].
+
+    The torque before is what the controller sent at the last tick, blends and
+    fallbacks included; at the first tick nothing is bounded. Industrial arms stop at
+    1000 Nm/s. Below the limits that no task may break, these give way to them.
+
+    Args:
+        rate: largest change of a torque [Nm/s], one number or one a joint.
+        name: "torque rate limits" by default.
+
+    Raises:
+        InputError: a rate is not greater than 0; at binding, not one a joint.
+    """
+
+    space = "torque"
+
+    def __init__(
+        self, rate: ArrayLike = 1000.0, *, name: str = "torque rate limits"
+    ) -> None:
+        super().__init__(name, "Nm")
+        self.rate = rate
+
+    @property
+    def rate(self) -> Array:
+        """Largest change [Nm/s], () or (n,); may be changed on the way.
+
+        Raises:
+            InputError: when set, not greater than 0, or not one a joint.
+        """
+        return self._rate
+
+    @rate.setter
+    def rate(self, rate: ArrayLike) -> None:
+        checked = per_row(rate, f"rate of '{self.name}'")
+        if (checked == 0.0).any():
+            raise InputError(f"rate of '{self.name}' must be greater than 0.")
+        before, self._rate = getattr(self, "_rate", checked), checked
+        try:
+            announce(self)
+        except InputError:
+            self._rate = before
+            raise
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """The joints' names."""
+        return robot.joint_names
+
+    def check(self, robot: Robot) -> None:
+        """One rate, or one a joint."""
+        if self._rate.size not in (1, robot.nv):
+            raise InputError(
+                f"'{self.name}' has {self._rate.size} rates, but robot '{robot.name}' "
+                f"has {robot.nv} joints: give one number, or one a joint."
+            )
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Write the rows."""
+        np.fill_diagonal(rows.A, 1.0)
+        if state.commanded is None:
+            rows.lower[:], rows.upper[:] = -np.inf, np.inf
+            return
+        step = self._rate * state.dt
+        rows.lower[:], rows.upper[:] = state.commanded - step, state.commanded + step
 
 
 @final
@@ -92,6 +175,10 @@ class JointLimits(Task):
         if integrator not in get_args(Integrator):
             raise UnknownName("integrator", integrator, get_args(Integrator))
         self.integrator = integrator
+
+    def __setattr__(self, name: str, value: object) -> None:
+        refuse_in_use(self, name)
+        super().__setattr__(name, value)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""

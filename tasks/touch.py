@@ -71,6 +71,10 @@ class TouchTask(Task):
         kinds = ("p", "R")[: self.size // 3]
         return tuple(f"{kind} {axis}" for kind in kinds for axis in AXES)
 
+    def wish_units(self, rows: int) -> tuple[str, ...]:
+        """All rows are accelerations, those that press too."""
+        return (("m/s^2",) * 3 + ("rad/s^2",) * 3)[:rows]
+
     @abstractmethod
     def reset(self) -> None:
         """Forget what was remembered of earlier ticks."""

@@ -321,6 +321,24 @@ def _hybrid(state: State, rng: Rng, aligned: bool) -> Subject:
     )
 
 
+def _knife(state: State, rng: Rng, aligned: bool) -> Subject:
+    """A blade that may rock about its normal: rows of two kernels."""
+    p, R = _near(state, rng, aligned), _target(state, rng, aligned)
+    pd, pdd, turn = rng.normal(size=3), rng.normal(size=3), turning(rng)
+    task = tasks.KnifePose(tip(state.robot), p, R, rocking=True)
+
+    def move(t: float) -> None:
+        turned, omega, alpha = turn(t)
+        task.set_target(
+            p + t * pd + 0.5 * t * t * pdd,
+            turned @ R,
+            np.concatenate([pd + t * pdd, omega]),
+            np.concatenate([pdd, alpha]),
+        )
+
+    return Subject(task, move)
+
+
 def _compliant(kind: type[tasks.Impedance] | type[tasks.Admittance]):
     def make(state: State, rng: Rng, aligned: bool) -> Subject:
         frame = tip(state.robot)
@@ -328,6 +346,12 @@ def _compliant(kind: type[tasks.Impedance] | type[tasks.Admittance]):
         return Subject(kind(frame, target, axes=axes, sensor_frame=frame))
 
     return make
+
+
+def _singular(state: State, rng: Rng, aligned: bool) -> Subject:
+    """So wide a threshold that most directions are damped."""
+    goal = tasks.FramePosition(tip(state.robot), _near(state, rng, aligned))
+    return Subject(tasks.SingularDamping(goal, threshold=0.6))
 
 
 CATALOGUE: dict[type[Task], Entry] = {
@@ -368,12 +392,20 @@ CATALOGUE: dict[type[Task], Entry] = {
         "exact", lambda s, g, z: Subject(tasks.Posture(g.uniform(-1, 1, s.robot.nv)))
     ),
     tasks.Damping: Entry("velocity", lambda s, g, z: Subject(tasks.Damping())),
+    tasks.KnifePose: Entry("near zero", _knife),
     tasks.HybridForceMotion: Entry("force", _hybrid),
     tasks.Impedance: Entry("force", _compliant(tasks.Impedance)),
     tasks.Admittance: Entry("force", _compliant(tasks.Admittance)),
+    tasks.Clearance: Entry(
+        "bounds", lambda s, g, z: Subject(tasks.Clearance(*s.robot.frames[-2:], 0.05))
+    ),
+    tasks.SingularDamping: Entry("bounds", _singular),
     tasks.JointLocking: Entry("bounds", lambda s, g, z: Subject(tasks.JointLocking())),
     tasks.JointLimits: Entry("bounds", lambda s, g, z: Subject(tasks.JointLimits())),
     tasks.TorqueLimits: Entry("bounds", lambda s, g, z: Subject(tasks.TorqueLimits())),
+    tasks.TorqueRateLimits: Entry(
+        "bounds", lambda s, g, z: Subject(tasks.TorqueRateLimits())
+    ),
 }
 
 MOTION = {

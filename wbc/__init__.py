@@ -17,7 +17,14 @@ from wbc.errors import (
     UnknownName,
     WbcError,
 )
-from wbc.explain import ActiveBound, Blocker, Explanation, TaskExplanation
+from wbc.explain import (
+    ActiveBound,
+    Blocker,
+    Explanation,
+    LevelCost,
+    StrictnessCost,
+    TaskExplanation,
+)
 from wbc.frames import FrameState
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP, HierarchyResult, solve_hierarchy
@@ -54,6 +61,7 @@ __all__ = [
     "Law",
     "Level",
     "LevelAnalysis",
+    "LevelCost",
     "ModelError",
     "MotionTask",
     "NullSpace",
@@ -67,6 +75,7 @@ __all__ = [
     "StaleError",
     "State",
     "Status",
+    "StrictnessCost",
     "Task",
     "TaskExplanation",
     "TaskMiss",

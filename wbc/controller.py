@@ -13,12 +13,13 @@ from wbc.assembly import finite, measured
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP
-from wbc.resolver import Resolver, Status
+from wbc.resolver import Answer, Resolver, Status
 from wbc.robot import Robot
 from wbc.solution import Solution
 from wbc.stack import Stack
 from wbc.state import State
 from wbc.task import Task
+from wbc.transition import Bound, Transition
 
 __all__ = ["Controller", "resolve"]
 
@@ -66,8 +67,8 @@ class Controller:
             )
         self.dt = positive(dt, "dt")
         self.failures = 0
-        self._stack = Stack(robot, self.hierarchy)
-        self._solver = self.resolver.start(self._stack)
+        self._adopt(Bound(robot, self.hierarchy, self.resolver))
+        self._transition: Transition | None = None
         self._state = State(robot, self.dt)
         self._last = robot.q_home
         self._damping = np.diag(robot.state(robot.q_home).M) * FALLBACK_DAMPING
@@ -104,20 +105,73 @@ class Controller:
             )
         return self._tick(q, v, t, forces)
 
+    def change(
+        self,
+        hierarchy: Hierarchy | Level | Task,
+        over: float = 0.3,
+        resolver: Resolver | None = None,
+        rate: float = 500.0,
+    ) -> None:
+        """Hand over to another hierarchy, from the next tick on, without a jump.
+
+        Tasks, levels and priorities may all differ. For `over` seconds both are
+        resolved, and the torque moves smoothly from one to the other: limits that both
+        keep, and tasks that both meet, hold all the way (`wbc.transition`). A change
+        may come while another is under way; beyond three such, the last one waits.
+
+        Args:
+            hierarchy: what is wanted from now on.
+            over: duration [s]; 0 switches at once, with whatever jump that means.
+            resolver: the resolver from now on; the present one by default.
+            rate: the change takes longer where it would add more than so to a torque's
+                rate [Nm/s]; what a hierarchy does by itself comes on top, and
+                `tasks.TorqueRateLimits` bounds that, too.
+
+        Raises:
+            UnknownName, InputError: a task does not fit the robot, `over` is negative,
+                or the rate is not greater than 0; all stays as it was.
+        """
+        wanted, resolver = Hierarchy.of(hierarchy), resolver or self.resolver
+        ticks = round(positive(over, "over", zero=True) / self.dt)
+        most = positive(rate, "rate") * self.dt
+        bound = Bound(self.robot, wanted, resolver)
+        if self._transition is None:
+            self._transition = Transition(self._bound)
+        self._transition.to(bound, ticks, most)
+        self.hierarchy, self.resolver = wanted, resolver
+
+    @property
+    def changing(self) -> bool:
+        """Whether a change of hierarchy is under way."""
+        return self._transition is not None
+
+    def _adopt(self, bound: Bound) -> None:
+        """Let a hierarchy be the one that solutions report on."""
+        self._bound, self._stack, self._solver = bound, bound.stack, bound.solver
+
     def _tick(
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
     ) -> Solution:
-        stack = self._stack
         self._last = q
         self._state.refresh(q, v, t, wrenches)
+        share = 1.0
         try:
-            answer = self._solver.tick(stack, self._state)
-            torque = answer.torque
-            if torque is None:
-                torque = stack.torque(answer.vdot)
+            if self._transition is None:
+                torque, answer = self._bound.tick(self._state)
+            else:
+                torque, answer, share = self._pass_on(self._transition)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        return Solution(stack, torque, answer, answer.status)
+        self._state.commanded = torque.copy()
+        return Solution(self._stack, torque, answer, answer.status, share=share)
+
+    def _pass_on(self, transition: Transition) -> tuple[Array, Answer, float]:
+        """A tick of a change: torques, their source, share of the newest hierarchy."""
+        torque, answer = transition.tick(self._state)
+        self._adopt(transition.newest)
+        if transition.finished:
+            self._transition = None
+        return torque, answer, transition.share
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
@@ -134,6 +188,7 @@ class Controller:
         braking = self._damping * np.where(np.isfinite(v), v, 0.0)
         limit = self.robot.tau_max
         torque = np.clip(gravity - braking, -limit, limit)
+        self._state.commanded = torque.copy()
         return Solution(self._stack, torque, None, status, message)
 
     def __repr__(self) -> str:

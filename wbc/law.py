@@ -9,8 +9,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, per_row, positive
+from wbc.errors import InputError
 
 __all__ = ["PD", "Damper", "Law", "SaturatedPD"]
+
+
+class _Settled:
+    """Whose gains are set once: a stack may have copied them."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name in vars(self):
+            raise InputError(
+                f"'{name}' of a law cannot change: give its task a new law, "
+                f"task.law = {type(self).__name__}(...)."
+            )
+        super().__setattr__(name, value)
 
 
 class Law(ABC):
@@ -22,7 +35,7 @@ class Law(ABC):
 
 
 @final
-class PD(Law):
+class PD(_Settled, Law):
     """-kp e - kd de/dt: a mass on a spring and a damper.
 
     Args:
@@ -47,7 +60,7 @@ class PD(Law):
 
 
 @final
-class Damper(Law):
+class Damper(_Settled, Law):
     """-kd de/dt: a velocity that should vanish, wherever the error is.
 
     Args:
@@ -69,7 +82,7 @@ class Damper(Law):
 
 
 @final
-class SaturatedPD(Law):
+class SaturatedPD(_Settled, Law):
     """A PD that approaches from afar at a bounded speed (Khatib 1987; P4 sec. III-B).
 
     The wanted velocity -(kp / kd) e is shortened to `speed`, and to what half of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import final
@@ -11,7 +12,7 @@ import numpy as np
 from wbc.arrays import Array, IntArray
 from wbc.certificate import Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
-from wbc.explain import Explanation, explain
+from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.resolver import Answer, Status
 from wbc.stack import Stack, Term
 from wbc.task import MotionTask
@@ -57,11 +58,13 @@ class Solution:
             after a fallback.
         status: how the tick ended.
         message: what went wrong, empty if nothing did.
+        share: of the hierarchy that reports are about; below 1 while a change to it
+            is under way (`Controller.change`), so that its levels are not optimal yet.
     """
 
     __slots__ = (
-        "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message", "status",
-        "torque",
+        "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message", "share",
+        "status", "torque",
     )  # fmt: skip
 
     def __init__(
@@ -71,9 +74,11 @@ class Solution:
         answer: Answer | None,
         status: Status,
         message: str = "",
+        share: float = 1.0,
     ) -> None:
         self._stack, self._tick = stack, stack.tick
         self.torque, self.status, self.message = torque, status, message
+        self.share = share
         self._ranks: Array | IntArray | None = None
         self._slacks: Array | None = None
         if answer is None:
@@ -125,6 +130,20 @@ class Solution:
         y = np.linalg.solve(stack.L_inv.T, self.acceleration)
         return certify(levels, y, then)
 
+    def level_rows(self) -> list[tuple[Array, Array, Array]]:
+        """Copies of the rows that were resolved: (A (m, n), lower (m,), upper (m,)).
+
+        Weighted, in joint accelerations, from the top level down.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        stack = self._fresh()
+        return [
+            (stack.A[k].copy(), stack.lower[k].copy(), stack.upper[k].copy())
+            for k in stack.levels
+        ]
+
     def report(self, task: str) -> TaskReport:
         """How a task fared.
 
@@ -153,11 +172,23 @@ class Solution:
         """
         return explain(self._fresh(), self.acceleration, self.certificate())
 
+    def cost_of_strictness(self) -> StrictnessCost:
+        """What each level misses alone, what it misses here, who took the difference.
+
+        Made for reading, not for every tick: it takes milliseconds. A level that pays
+        more than it is worth can share its level, `+`, and be weighed instead.
+
+        Raises:
+            StaleError: the controller has moved on, or this tick fell back.
+        """
+        return strictness_cost(self._fresh(), self.acceleration)
+
     def error_norms(self) -> Iterator[tuple[str, float]]:
         """Name and norm of the error of every equality task, cheap enough for a log."""
         for term in self._fresh().terms:
             if isinstance(term.task, MotionTask):
-                yield term.task.name, float(np.linalg.norm(term.rows.error))
+                error = term.rows.error
+                yield term.task.name, math.sqrt(error @ error)
 
     def active_rows(self) -> list[str]:
         """Inequality rows at a bound or beyond it, as "level k: task: row"."""

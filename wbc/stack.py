@@ -9,6 +9,7 @@ import numpy as np
 from wbc import slots
 from wbc.arrays import Array, IntArray
 from wbc.assembly import back_substitute, inverse_dynamics
+from wbc.binding import register
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.kernel import Kernel
@@ -51,7 +52,11 @@ class Term:
         self.task, self.weight, self.level = task, weight, level
         self.names = task.row_names(robot)
         self.where = slice(start, start + len(self.names))
-        self.kernel = task.kernel(robot) if self.names else None
+        self.read(robot)
+
+    def read(self, robot: Robot) -> None:
+        """Read gains and settings of the task."""
+        self.kernel = self.task.kernel(robot) if self.names else None
 
 
 @final
@@ -97,15 +102,24 @@ class Stack:
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
         self._answer_size = 2 * robot.nv + m + len(self.levels)
-        self._python = [term for term in self.terms if term.kernel is None]
         self._program: Program | None = None
-        self._advancing = [
-            term.task
-            for term in self._python
-            if type(term.task).advance is not Task.advance
-        ]
         self._state: State | None = None
         self.tick = 0
+        self._sort_out()
+        register(self)
+
+    def _sort_out(self) -> None:
+        """Tell tasks in plain Python, and those with a memory, from the others."""
+        self._python = [term for term in self.terms if term.kernel is None]
+        everyone = [term.task for term in self.terms]
+        self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
+
+    def read_afresh(self) -> None:
+        """Read gains and settings of the tasks again, at the next update."""
+        for term in self.terms:
+            term.read(self.robot)
+        self._sort_out()
+        self._state = None
 
     def _allocate(self, m: int, n: int) -> None:
         self.raw, self.bands = np.zeros((m, n)), np.zeros((5, m))
@@ -184,7 +198,7 @@ class Stack:
         """Let tasks with a memory move on, and add their contact torques to h."""
         self.h[:] = 0.0
         for task in self._advancing:
-            task.advance(state, self.h)
+            self.h += state.advanced(task)
         self.h += state.h
 
     def _complain(self, outcome: int) -> NoReturn:

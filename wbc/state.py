@@ -14,6 +14,7 @@ from wbc.frames import FrameState
 
 if TYPE_CHECKING:
     from wbc.robot import Robot
+    from wbc.task import Task
 
 __all__ = ["State"]
 
@@ -36,12 +37,13 @@ class State:
         h: (n,) Coriolis, centrifugal and gravity torques: M vdot + h = tau.
         wrenches: sensor name -> (6,) wrench of the robot ON the environment,
             [force; moment], world axes, at the sensor [N, Nm].
+        commanded: (n,) torques sent at the tick before [Nm or N]; None if unknown.
         data: Pinocchio's Data behind all this; do not write to it.
     """
 
     __slots__ = (
-        "M", "_frames", "_moved", "_zero", "data", "dt", "h", "q", "robot", "t", "v",
-        "wrenches",
+        "M", "_advanced", "_frames", "_moved", "_zero", "commanded", "data", "dt", "h",
+        "q", "robot", "t", "v", "wrenches",
     )  # fmt: skip
 
     def __init__(self, robot: Robot, dt: float) -> None:
@@ -50,6 +52,8 @@ class State:
         self.M, self.h = self.data.M, self.data.nle
         self._zero = np.zeros(robot.nv)
         self._frames: dict[str, FrameState] = {}
+        self._advanced: dict[int, Array] = {}
+        self.commanded: Array | None = None
         self._moved = False
 
     def refresh(
@@ -64,6 +68,7 @@ class State:
         pin.crba(model, data, q, IN_WORLD)  # also computes the joints' Jacobian
         pin.nonLinearEffects(model, data, q, v)
         self._frames.clear()
+        self._advanced.clear()
         self._moved = False
 
     def frame(self, name: str) -> FrameState:
@@ -86,6 +91,18 @@ class State:
         if sensor not in self.wrenches:
             raise UnknownName("force sensor", sensor, self.wrenches)
         return self.wrenches[sensor]
+
+    def advanced(self, task: Task) -> Array:
+        """Torques (n,) of the contact forces that a task counts on [Nm].
+
+        The first to ask moves on what the task remembers: once at an instant, however
+        many stacks it stands in.
+        """
+        known = self._advanced.get(id(task))
+        if known is None:
+            known = self._advanced[id(task)] = np.zeros(self.h.size)
+            task.advance(self, known)
+        return known
 
     def gravity(self) -> Array:
         """Gravity torques (n,) [Nm]."""

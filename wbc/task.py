@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
 from wbc.arrays import Array
+from wbc.binding import announce
 from wbc.errors import InputError
 from wbc.kernel import Kernel
 from wbc.law import Law
@@ -138,7 +139,28 @@ class MotionTask(Task):
         frames: tuple[str, ...] = (),
     ) -> None:
         super().__init__(name, unit, frames)
-        self.rows, self.law = rows, law
+        self.rows = rows
+        self.law = law
+
+    @property
+    def law(self) -> Law:
+        """From error and rate to acceleration; may be replaced, also in use.
+
+        Raises:
+            InputError: when set, no law, or one of the wrong number of gains.
+        """
+        return self._law
+
+    @law.setter
+    def law(self, law: Law) -> None:
+        if not isinstance(law, Law):
+            raise InputError(f"law of '{self.name}' must be a Law, got {law!r}.")
+        before, self._law = getattr(self, "_law", law), law
+        try:
+            announce(self)
+        except InputError:
+            self._law = before
+            raise
 
     @abstractmethod
     def evaluate(self, state: State, out: Rows) -> None:

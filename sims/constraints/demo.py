@@ -11,7 +11,7 @@ import numpy as np
 from robots import racer
 from sims import constraints
 from sims.cell import ArmCell, Cell
-from sims.constraints import hybrid, joint_limit, plane
+from sims.constraints import hybrid, joint_limit, plane, singular
 from sims.constraints.case import Case, Trial
 from sims.constraints.soundness import soundness
 from sims.constraints.surface import TIP
@@ -28,7 +28,7 @@ from wbc.arrays import Array
 
 __all__ = ["DEMO"]
 
-FAMILIES = (plane, joint_limit, hybrid)
+FAMILIES = (plane, joint_limit, hybrid, singular)
 """Modules of cases: each has `cases`, `metrics` and `figures`."""
 PAUSE = 0.5
 """Between two runs in the replay [s]."""

@@ -25,11 +25,11 @@ __all__ = ["cases", "figures", "metrics"]
 
 FORCE = 20.0
 """That the probe should press with [N]."""
-HEIGHT = 0.02
+HEIGHT = 0.012
 """Of the start over the plate, which the controller does not know [m]."""
 APPROACH = 0.01
 """Speed of the search [m/s]."""
-DURATION = 12.5
+DURATION = 11.5
 """More than it takes to find the plate, to turn twice and to slide [s]."""
 START = PLANE.point + np.array([0.0, -0.10, 0.0])
 

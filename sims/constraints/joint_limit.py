@@ -27,7 +27,7 @@ ZONE = 0.1
 STIFF = 2500.0
 WAY = np.array([0.30, 0.10, 0.20])
 """From the start to the goal [m]."""
-OUT, WAIT, BACK = 2.0, 0.5, 2.0
+OUT, WAIT, BACK = 1.6, 0.4, 1.6
 """Times to go to the goal, to stay, and to return [s]."""
 WAYS: dict[str, tuple[str, Callable[[], Resolver] | None]] = {
     "baseline": ("no handling", None),
@@ -47,7 +47,7 @@ def cases(robot: Robot) -> list[Case]:
         Case(
             f"joint_limit_{way}",
             partial(_stack, narrow, way),
-            OUT + WAIT + BACK + 0.5,
+            OUT + WAIT + BACK + 0.4,
             READY,
             robot=narrow,
             resolver=resolver,

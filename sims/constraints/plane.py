@@ -34,7 +34,7 @@ GOAL = PLANE.point + np.array([0.10, 0.12, 0.14])
 """Of the second run [m]; it lies off the plane."""
 SIDE = PLANE.point + np.array([-0.08, -0.10, 0.0])
 """Over or under where the second run begins [m]."""
-TRAVEL_TIME = 3.0
+TRAVEL_TIME = 2.5
 BOUNDS = {
     "plane_distance_final_m": (1e-4, 1e-3),
     "plane_angle_final_rad": (1e-3, 5e-3),
@@ -52,9 +52,9 @@ def cases(robot: Robot) -> list[Case]:
     start = posture_at(robot, ABOVE, axis)
     on_plane = posture_at(robot, _projected(SIDE), -NORMAL)
     return [
-        Case("plane_reach", lambda q, t: _reach(robot, q), 3.0, start),
-        Case("plane_align", lambda q, t: _align(robot, q), 2.0),
-        Case("on_plane", lambda q, t: _along(robot, q), TRAVEL_TIME + 1.5, on_plane),
+        Case("plane_reach", lambda q, t: _reach(robot, q), 2.0, start),
+        Case("plane_align", lambda q, t: _align(robot, q), 1.5),
+        Case("on_plane", lambda q, t: _along(robot, q), TRAVEL_TIME + 0.8, on_plane),
     ]
 
 

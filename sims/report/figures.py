@@ -156,6 +156,10 @@ def lines3d(
         kept = thin_curve(points, budget)
         axes.plot(*points[kept].T, label=label, **look)
     axes.set_aspect("equal")
+    spans = {axis: np.ptp(getattr(axes, f"get_{axis}lim")()) for axis in "xyz"}
+    for axis, span in spans.items():
+        bins = max(2, round(6.0 * span / max(spans.values())))
+        axes.locator_params(axis=axis, nbins=bins)
     legend(axes)
     return to_svg(figure, title)
 

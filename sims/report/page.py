@@ -8,6 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from sims.metrics import Metric, format_value, to_json, verdict
+from sims.report.datatable import Table, as_html
 from wbc.errors import InputError
 
 __all__ = ["write_report"]
@@ -43,6 +44,7 @@ def write_report(
     figures: Sequence[tuple[str, str]] = (),
     replay_html: str | None = None,
     facts: Mapping[str, str] | None = None,
+    data: Sequence[Table] = (),
 ) -> None:
     """Write one self-contained page.
 
@@ -54,6 +56,7 @@ def write_report(
         figures: (caption, `<svg>` element) pairs, in order.
         replay_html: a complete document, shown in a frame of its own.
         facts: what the run was made with, such as resolver, versions and seed.
+        data: tables of numbers that are not judged, each under its heading.
 
     Raises:
         InputError: metrics of the same name, or a figure that is not one SVG element.
@@ -66,7 +69,7 @@ def write_report(
         summary=html.escape(summary),
         style=files("sims.report").joinpath("page.css").read_text(encoding="utf-8"),
         verdict=_verdict(metrics),
-        body=body + _figures(figures),
+        body=body + "".join(map(as_html, data)) + _figures(figures),
     )
     Path(path).write_text(page, encoding="utf-8")
 

@@ -110,7 +110,7 @@ def soft_bodies(
         surfaces.append(
             {
                 "name": f"flex {name}",
-                "rgba": model.flex_rgba[index].tolist(),
+                "rgba": _flex_rgba(model, index),
                 "faces": store.add(faces, "u4"),
                 "vertices": store.add(np.rint((part - low) / step), "u2"),
                 "low": low.tolist(),
@@ -144,7 +144,17 @@ def _surface(model: mujoco.MjModel, flex: int) -> NDArray[np.int32] | None:
 
 def _rgba(model: mujoco.MjModel, geom: int) -> Any:
     """Colour as MuJoCo draws it; a texture counts by its mean colour."""
-    own, material = model.geom_rgba[geom], int(model.geom_matid[geom])
+    return _painted(model, model.geom_rgba[geom], int(model.geom_matid[geom]))
+
+
+def _flex_rgba(model: mujoco.MjModel, flex: int) -> Any:
+    """The same for a deformable body, by its first element's material."""
+    each = model.flex_matid.size == model.nflexelem  # one a body before MuJoCo 4
+    where = int(model.flex_elemadr[flex]) if each else flex
+    return _painted(model, model.flex_rgba[flex], int(model.flex_matid[where]))
+
+
+def _painted(model: mujoco.MjModel, own: NDArray[np.float32], material: int) -> Any:
     if material < 0:
         return own.tolist()
     rgba = model.mat_rgba[material] if tuple(own) == _UNSET else own

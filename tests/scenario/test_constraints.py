@@ -9,12 +9,14 @@ import pytest
 from robots import racer
 from sims import constraints
 from sims.constraints import hybrid, joint_limit
+from sims.constraints.case import limits, posture_at
 from sims.constraints.follower import axes_along
 from sims.constraints.surface import NORMAL, PLANE, SURFACE, TIP
 from sims.demo import Options
 from sims.registry import find_demo
 from sims.run import run
 from sims.wrist import WristSensor
+from tasks import Admittance, AxisAlignment, Damping, Impedance
 from wbc import Controller
 
 ARM = racer.load("probe")
@@ -89,6 +91,41 @@ def test_searching_where_there_is_no_plate_stays_slow():
     speed = np.linalg.norm(np.diff(log.p[TIP], axis=0), axis=1) / 1e-3
     assert speed.max() < 1.3 * hybrid.APPROACH
     assert np.isnan(script.found)
+
+
+@pytest.mark.parametrize(
+    ("kind", "mismatch", "short"),
+    [(Impedance, False, 0.05), (Admittance, False, 0.05), (Admittance, True, 0.5)],
+)
+def test_a_compliant_probe_without_a_spring_along_the_normal_presses_as_told(
+    kind, mismatch, short
+):
+    """On real contact; an impedance has no integral, so its model must be right."""
+    axes = axes_along(-NORMAL)
+    cell = constraints.cell(ARM, mismatch=mismatch)
+    q = posture_at(ARM, PLANE.point + 0.002 * NORMAL, -NORMAL)
+    cell.reset(q)
+    beside = [2000.0, 2000.0, 0.0]
+    soft = kind(
+        TIP,
+        ARM.state(q).frame(TIP).p,
+        mass=30.0,
+        stiffness=beside,
+        damping=[490.0, 490.0, 1500.0],
+        force=[0.0, 0.0, 20.0],
+        axes=axes,
+    )
+    upright = AxisAlignment(TIP, -NORMAL, stiffness=2500.0)
+    touch = []
+    log = run(
+        cell,
+        Controller(ARM, limits() >> soft >> upright >> Damping()),
+        1.5,
+        watch=lambda c, _: touch.append(float(c.data.sensor("touch").data[0])) or True,
+    )
+    assert max(touch) < 60.0
+    assert np.abs(np.array(touch)[-200:] - 20.0).max() < short
+    assert log.failures == 0
 
 
 def test_the_ways_of_the_elbow_differ_in_nothing_but_its_limit():

@@ -32,6 +32,6 @@ def test_every_command_of_the_command_line_is_documented(capsys):
 def test_set_up_takes_one_line_each_and_ci_runs_the_one_for_the_tests():
     lines = re.findall(r"^python3 -m venv .*", TEXT, flags=re.MULTILINE)
     assert len(lines) == 2
-    assert "wbc run welding" in lines[0]
+    assert "wbc run cutting" in lines[0]
     assert "pytest" in lines[1]
     assert "README.md" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")

@@ -228,4 +228,5 @@ def test_every_motion_task_of_the_catalogue_can_be_analysed():
         (level,) = Hierarchy(task).analyse(state).levels
         rows = len(task.row_names(state.robot))
         assert level.rows + level.inequalities == rows, kind
-        assert level.rank == level.rows, kind
+        if kind is not tasks.SingularDamping:  # has rows of zeros away from trouble
+            assert level.rank == level.rows, kind

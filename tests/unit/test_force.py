@@ -200,6 +200,17 @@ def test_no_two_tasks_answer_the_same_measured_force():
     assert len(press() >> moments) == 2
 
 
+def test_units_of_rows_that_move_and_rows_that_press():
+    task = press(selection=(0, 0, 1))
+    assert task.row_units(3) == ("m", "m", "N")
+    assert task.wish_units(3) == ("m/s^2",) * 3
+    six = HybridForceMotion(
+        TIP, P, np.zeros(6), (1, 0, 0, 0, 1, 0), orientation=np.eye(3)
+    )
+    assert six.row_units(6) == ("N", "m", "m", "rad", "Nm", "rad")
+    assert six.wish_units(6) == ("m/s^2",) * 3 + ("rad/s^2",) * 3
+
+
 def test_a_refused_target_leaves_the_old_one():
     task = press()
     for change in (

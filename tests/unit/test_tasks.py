@@ -12,6 +12,7 @@ from tests.arms import seven_axis, six_axis
 from tests.catalogue import CATALOGUE, MOTION, random_state
 from tests.tolerances import CURVE, ROUND_OFF
 from wbc import (
+    PD,
     Controller,
     InputError,
     MotionTask,
@@ -62,7 +63,7 @@ def test_a_stiffness_for_each_row_must_fit_the_rows(kind):
     task = CATALOGUE[kind].make(random_state(ARM, rng), rng, False).task
     assert isinstance(task, MotionTask)
     m = len(task.row_names(ARM))
-    task.law.damping = np.ones(m + 1)
+    task.law = PD(1.0, np.ones(m + 1))
     with pytest.raises(InputError, match=f"has {m} rows and {m + 1} values of damping"):
         task.check(ARM)
 

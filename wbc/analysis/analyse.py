@@ -139,7 +139,7 @@ def _rows(
     if task.space == "torque":  # tau = M vdot + h
         A, wish = A @ state.M, wish - A @ state.h
     equal = rows.lower == rows.upper
-    if not np.isfinite(A).all() or np.isnan(rows.lower + 0.0 * rows.upper).any():
+    if not np.isfinite(A).all() or np.isnan([rows.lower, rows.upper]).any():
         raise SolverError(f"task '{task.name}' wrote a row that is not finite.", level)
     Ay = weight * (A @ basis)
     found = [

@@ -2,10 +2,22 @@
 
 The optimum of a hierarchy answers linearly to its bounds as long as the same ones stay
 active (`response`); from that follows what blocks each task and who pays for each
-bound (`findings`), as frozen values (`data`) that print as a table (`text`).
+bound (`findings`), as frozen values (`data`) that print as a table (`text`). What a
+level would reach without those above, and which of them took the difference, is told by
+`strictness`.
 """
 
 from wbc.explain.data import ActiveBound, Blocker, Explanation, TaskExplanation
 from wbc.explain.findings import explain
+from wbc.explain.strictness import LevelCost, StrictnessCost, strictness_cost
 
-__all__ = ["ActiveBound", "Blocker", "Explanation", "TaskExplanation", "explain"]
+__all__ = [
+    "ActiveBound",
+    "Blocker",
+    "Explanation",
+    "LevelCost",
+    "StrictnessCost",
+    "TaskExplanation",
+    "explain",
+    "strictness_cost",
+]

@@ -1,0 +1,1 @@
+"""Resolvers side by side: on random stacks, on the cells, and through transitions."""

@@ -1,0 +1,97 @@
+"""The grasping demo: all cases, judged and drawn."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+
+from robots import racer
+from sims import grasping
+from sims.cell import ArmCell, Cell
+from sims.demo import Demo, Options, Outcome
+from sims.grasping.cases import COUNT, Case, seeded_cases
+from sims.grasping.figures import figures
+from sims.grasping.gallery import camera, replay
+from sims.grasping.job import Job
+from sims.grasping.metrics import OBJECT, Result, metrics
+from sims.grasping.plan import TCP
+from sims.grasping.scene import GOAL
+from sims.log import shared_metrics
+from sims.report.snapshot import Image, render
+from sims.resolvers import make_resolver
+from sims.run import run
+from sims.viewer import open_viewer
+from wbc import Controller, Robot, Solution
+
+__all__ = ["DEMO", "run_cases"]
+
+LONGEST = 30.0
+"""Time after which a job has failed [s]."""
+
+
+def run_cases(options: Options, count: int = COUNT) -> Outcome:
+    """Grasp the first `count` cylinders of the seed, one after another."""
+    arm = racer.load("gripper")
+    results = []
+    for case in seeded_cases(arm, options.seed, count):
+        cell = grasping.cell(
+            arm, case.cylinder, mismatch=options.mismatch, seed=options.seed
+        )
+        results.append(_grasp(arm, cell, case, options))
+    series = {
+        f"{index + 1}/{name}": values
+        for index, result in enumerate(results)
+        for name, values in result.log.arrays().items()
+    }
+    logs = [result.log for result in results]
+    simulated = sum(log.t.size for log in logs) * 1e-3
+    return Outcome(
+        metrics=[
+            *metrics(results, make_resolver(options.resolver)),
+            *shared_metrics(logs),
+        ],
+        series=series,
+        figures=lambda: figures(results),
+        replay=lambda: replay(results),
+        picture=lambda: _picture(cell),
+        facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
+    )
+
+
+def _grasp(arm: Robot, cell: ArmCell, case: Case, options: Options) -> Result:
+    cell.reset(case.start)
+    job = Job(arm, cell, case.cylinder, GOAL, case.start)
+    window = open_viewer(cell, camera()) if options.view else None
+
+    def watch(cell: Cell, solution: Solution) -> bool:
+        shown = window is None or window(cell, solution)
+        return shown and job.watch(cell, solution)
+
+    log = run(
+        cell,
+        Controller(arm, job.rim.hierarchy, make_resolver(options.resolver)),
+        min(LONGEST, options.duration or np.inf),
+        script=job.script,
+        sites=(TCP, OBJECT),
+        watch=watch,
+        label=f"grasping {case.cylinder.name}",
+        quiet=options.quiet,
+    )
+    if window:
+        window.close()
+    if job.failed and options.duration is None:
+        sys.stderr.write(f"wbc: {job.report}\n")
+    return Result(job, log)
+
+
+def _picture(cell: ArmCell) -> Image:
+    """The cell as it stands at the end."""
+    return render(cell.model, cell.data, camera(), 1280, 800)
+
+
+DEMO = Demo(
+    "grasping",
+    "a 6-axis arm takes cylinders by the rim, lifts, carries and places them",
+    run_cases,
+)

@@ -1,0 +1,148 @@
+"""The pose of a blade that cuts: tip on a moving point, blade along its path."""
+
+from __future__ import annotations
+
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tasks.base import CatalogueTask, flat_frame, run_kernel
+from tasks.evaluator import Code
+from wbc import PD, FrameState, Kernel, Robot, Rows, State
+from wbc.arrays import ROTATION_TOLERANCE, Array
+from wbc.errors import InputError, UnknownName
+from wbc.kernel import NO_TABLE
+
+__all__ = ["KnifePose"]
+
+STILL = np.zeros(6)
+STILL.flags.writeable = False
+IDENTITY = np.eye(3)
+SHAPES = ((3,), (3, 3), (6,), (6,))
+WHAT = ("position", "orientation", "twist", "acceleration")
+NORMAL, ACROSS, DOWN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+
+
+@final
+class KnifePose(CatalogueTask):
+    """A blade's tip at p_d and its orientation R_d, against what it cuts.
+
+    Computed torque as in P0 eqs. (15)-(17), mended: the measured wrench h of the knife
+    on its surroundings enters as J^T h, without which cutting forces push the knife
+    off by h / (Lambda kp). Blade frame: z from handle to tip, edge along -x, flat sides
+    across y.
+
+    Args:
+        frame: name of the frame at the tip.
+        position: (3,) p_d [m].
+        orientation: (3, 3) R_d.
+        rocking: leave the rotation about the blade's normal y free: two rows keep the
+            flat of the blade where it should be, instead of three.
+        sensor: name of the force sensor; None for no compensation.
+        sensor_frame: where it sits on the robot; its wrench is about this point.
+        stiffness: [1/s^2], one number or one a row.
+        damping: [1/s], critical by default.
+        name: "<frame> knife pose" by default.
+
+    Raises:
+        InputError: unusable target or gains.
+        UnknownName: at the first tick, the sensor is missing.
+    """
+
+    code = Code.POSE
+
+    def __init__(
+        self,
+        frame: str,
+        position: ArrayLike,
+        orientation: ArrayLike,
+        *,
+        rocking: bool = False,
+        sensor: str | None = None,
+        sensor_frame: str = "wrist_sensor",
+        stiffness: ArrayLike = 100.0,
+        damping: ArrayLike | None = None,
+        name: str | None = None,
+    ) -> None:
+        turned = ("tilt 1", "tilt 2") if rocking else ("R x", "R y", "R z")
+        rows = ("p x", "p y", "p z", *turned)
+        law = PD(stiffness, damping)
+        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, (frame,))
+        self.rocking, self.sensor, self.sensor_frame = rocking, sensor, sensor_frame
+        self._parameters = np.zeros(24)
+        self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
+        self.set_target(position, orientation)
+
+    def set_target(
+        self,
+        position: ArrayLike,
+        orientation: ArrayLike,
+        twist: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+    ) -> None:
+        """Move the target; twist and its derivative are [linear; angular], world axes.
+
+        Raises:
+            InputError: unusable values; the target stays as it was.
+        """
+        p, R, V, A = map(np.asarray, (position, orientation, twist, acceleration))
+        for array, shape, what in zip((p, R, V, A), SHAPES, WHAT, strict=True):
+            if array.shape != shape:
+                raise InputError(
+                    f"target {what} of '{self.name}' has shape {array.shape}; it must "
+                    f"be {shape}."
+                )
+        target = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
+        if not np.isfinite(target).all():
+            raise InputError(f"target of '{self.name}' must be finite, got {target}.")
+        if np.abs(R @ R.T - IDENTITY).max() > ROTATION_TOLERANCE or _turned(R) < 0.0:
+            raise InputError(f"orientation of '{self.name}' is no rotation: {R}.")
+        self._parameters[:] = target
+        self._axis[9:12], self._axis[12:15], self._axis[15:] = R[:, 1], V[3:], A[3:]
+
+    def parameters(self, robot: Robot) -> Array:
+        """Those of `FramePose`, live."""
+        del robot
+        return self._parameters
+
+    def check(self, robot: Robot) -> None:
+        """Both frames exist."""
+        super().check(robot)
+        if self.sensor is not None:
+            robot.frame_id(self.sensor_frame)
+
+    def kernel(self, robot: Robot) -> Kernel | None:
+        """The compiled half; none for a rocking blade, with its rows of two kernels."""
+        return None if self.rocking else super().kernel(robot)
+
+    def evaluate(self, state: State, out: Rows) -> None:
+        """Write the rows."""
+        F = flat_frame(state.frame(self.frames[0]), state.robot.nv)
+        p = self._parameters
+        if not self.rocking:
+            run_kernel(Code.POSE, p, NO_TABLE, F, state, out)
+            return
+        upper, lower = _part(out, 0, 3), _part(out, 3, 5)
+        run_kernel(Code.ON_POINT, p[:9], NO_TABLE, F, state, upper)
+        run_kernel(Code.ALONG, self._axis, NO_TABLE, F, state, lower)
+
+    def advance(self, state: State, torque: Array) -> None:
+        """Count on the measured wrench: add J^T h."""
+        if self.sensor is None:
+            return
+        measured = state.wrenches.get(self.sensor)
+        if measured is None:
+            raise UnknownName("force sensor", self.sensor, state.wrenches)
+        F: FrameState = state.frame(self.sensor_frame)
+        torque += F.J.T @ measured
+
+
+def _turned(R: Array) -> float:
+    """Determinant of R (3, 3): -1 for a mirror image."""
+    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
+    return float(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
+
+
+def _part(rows: Rows, begin: int, end: int) -> Rows:
+    return Rows(*(array[begin:end] for array in rows))

@@ -1,0 +1,108 @@
+"""Damping of the joint motion that a task loses near its singularities."""
+
+from __future__ import annotations
+
+from typing import final
+
+import numpy as np
+
+from wbc import PD, InputError, MotionTask, Robot, Rows, SaturatedPD, State, Task
+from wbc.arrays import Array, positive
+from wbc.rows import allocate_rows
+
+__all__ = ["SingularDamping"]
+
+
+@final
+class SingularDamping(Task):
+    """Rest for the joint directions in which another task becomes singular.
+
+    With J = U diag(s) V^T of that task, e the state error that its law reacts to and kd
+    its damping, row i asks for l_i v_i^T vdot = -l_i kd v_i^T v with
+
+        l_i^2 = (1 - (s_i / (threshold |J|))^2) ((factor |J|)^2 + bend |J| |e|),
+
+    and for nothing where s_i is beyond the threshold. Put it beside the task, on the
+    same level: `goal + SingularDamping(goal)`. There it makes of 1 / s the gain
+    s / (s^2 + l^2) of a damped inverse, with three differences. The lost directions are
+    damped towards rest, not towards zero acceleration, which would leave their velocity
+    alone and let the arm swing about its border (Wampler and Leifer 1988). The damping
+    grows with the error (Levenberg and Marquardt; Sugihara 2011): it stands for the
+    curvature of the error that J alone does not show, so a goal beyond reach pulls no
+    harder than the law is stiff. And directions that the task leaves free count as
+    singular as its weakest one, as the curvature couples them.
+
+    The rows are rows like others: both families of resolvers take them, no higher level
+    feels them, and strict priorities stay exact, which damping within a projector would
+    break. They vanish away from singularities, and at rest they ask for nothing: they
+    bend no goal that can be reached, but near a singularity tracking lags behind and
+    levels below get nothing in directions that are damped.
+
+    Args:
+        task: whose singularities; its law must be a `PD` or a `SaturatedPD`. The latter
+            bounds what a goal far beyond reach asks for.
+        threshold: singular value below which damping sets in, relative to |J|.
+        factor: damping at zero error, on the same scale.
+        bend: curvature of the error over the joints, relative to |J|; 1/3 covers
+            serial arms.
+        name: "singular damping" by default.
+
+    Raises:
+        InputError: a number is not greater than 0, or the law is none of the two.
+    """
+
+    def __init__(
+        self,
+        task: MotionTask,
+        *,
+        threshold: float = 0.1,
+        factor: float = 0.01,
+        bend: float = 1.0 / 3.0,
+        name: str = "singular damping",
+    ) -> None:
+        super().__init__(name, "rad/s", task.frames)
+        self.task = task
+        self._law()
+        self.threshold = positive(threshold, "threshold")
+        self.factor = positive(factor, "factor")
+        self.bend = positive(bend, "bend")
+
+    def row_names(self, robot: Robot) -> tuple[str, ...]:
+        """One a direction of the joints, from the task's strongest to its weakest."""
+        return tuple(f"direction {i + 1}" for i in range(robot.nv))
+
+    def check(self, robot: Robot) -> None:
+        """The task fits the robot, and its law is one of the two."""
+        self.task.check(robot)
+        self._law()
+
+    def update(self, state: State, rows: Rows) -> None:
+        """Write the rows."""
+        seen = allocate_rows(len(self.task.row_names(state.robot)), state.robot.nv)
+        self.task.evaluate(state, seen)
+        _, s, Vt = np.linalg.svd(seen.A)
+        size = float(np.linalg.norm(s)) or 1.0
+        s = np.append(s, np.full(state.robot.nv - s.size, s[-1]))
+        fade = np.maximum(1.0 - (s / (self.threshold * size)) ** 2, 0.0)
+        square = (self.factor * size) ** 2 + self.bend * size * self._error(seen)
+        rows.A[:] = np.sqrt(square * fade)[:, None] * Vt
+        rows.rate[:] = rows.error[:] = rows.A @ state.v
+        rows.drift[:] = 0.0
+        damping = float(np.max(self._law().damping))
+        rows.upper[:] = rows.lower[:] = -damping * rows.rate
+
+    def _error(self, seen: Rows) -> float:
+        """Norm of the error, no larger than a law that saturates takes it."""
+        law = self._law()
+        wish: Array = law.acceleration(seen.error, np.zeros_like(seen.error))
+        stiffness = max(float(np.max(law.stiffness)), np.finfo(float).tiny)
+        return float(np.linalg.norm(wish)) / stiffness
+
+    def _law(self) -> PD | SaturatedPD:
+        law = self.task.law
+        if isinstance(law, PD | SaturatedPD):
+            return law
+        raise InputError(
+            f"'{self.name}' needs a task with a PD or SaturatedPD law, but that of "
+            f"'{self.task.name}' is {law!r}."
+        )
