@@ -10,7 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pinocchio as pin
-from site_drawing import BLUE, GREEN, ORANGE, Drawing
+from site_drawing import BLUE, Drawing
+from site_features import draw_cylinder, draw_line, draw_path, draw_plane, draw_triad
 
 import tasks
 from wbc import Task
@@ -28,35 +29,6 @@ def _turned(R: np.ndarray, *angle: float) -> np.ndarray:
     return np.array(pin.exp3(np.array(angle))) @ R
 
 
-def _line(d: Drawing, line: tasks.Line, half: float = 0.2, colour: str = BLUE) -> None:
-    d.line([line.point - half * line.direction, line.point + half * line.direction],
-           colour, 2.5)  # fmt: skip
-
-
-def _plane(d: Drawing, plane: tasks.Plane, half: float = 0.13) -> None:
-    a, b = tasks.Line(plane.point, plane.normal).normals
-    corners = [plane.point + half * (i * a + j * b) for i, j in
-               ((-1, -1), (1, -1), (1, 1), (-1, 1))]  # fmt: skip
-    d.line(corners, BLUE, 1.5, fill=BLUE)
-    d.arrow(plane.point, plane.point + 0.06 * plane.normal, BLUE, 1.5)
-
-
-def _cylinder(d: Drawing, can: tasks.Cylinder, length: float = 0.14) -> None:
-    d.ring(can.top, can.direction, can.radius, width=2.0, fill=BLUE)
-    d.ring(can.top - length * can.direction, can.direction, can.radius, width=1.0)
-    for side in tasks.Line(can.top, can.direction).normals:
-        for s in (-1.0, 1.0):
-            a = can.top + s * can.radius * side
-            d.line([a, a - length * can.direction], BLUE, 1.0)
-    axis = [can.top, can.top - length * can.direction]
-    d.line(axis, BLUE, 1.0, "6 3 1 3")
-
-
-def _triad(d: Drawing, p, R) -> None:
-    for axis, colour in zip(R.T, (ORANGE, GREEN, BLUE), strict=True):
-        d.arrow(p, p + 0.06 * axis, colour, 1.5)
-
-
 def position(p, R) -> Scene:
     """A target point."""
     goal = p + [0.02, 0.1, -0.04]
@@ -67,13 +39,13 @@ def orientation(p, R) -> Scene:
     """A target triad beside the tool."""
     goal = _turned(R, -0.5, 0.2, 0.4)
     show = p + [0.0, 0.17, 0.0]
-    return [tasks.FrameOrientation(TIP, goal)], lambda d: _triad(d, show, goal)
+    return [tasks.FrameOrientation(TIP, goal)], lambda d: draw_triad(d, show, goal)
 
 
 def pose(p, R) -> Scene:
     """A target triad at its place."""
     goal, turned = p + [0.0, 0.11, -0.03], _turned(R, -0.4, 0.2, 0.3)
-    return [tasks.FramePose(TIP, goal, turned)], lambda d: _triad(d, goal, turned)
+    return [tasks.FramePose(TIP, goal, turned)], lambda d: draw_triad(d, goal, turned)
 
 
 def on_point(p, R) -> Scene:
@@ -85,13 +57,13 @@ def on_point(p, R) -> Scene:
 def on_line(p, R) -> Scene:
     """A line."""
     line = tasks.Line(p + [0.0, 0.04, -0.09], ALONG)
-    return [tasks.PointOnLine(TIP, line)], lambda d: _line(d, line)
+    return [tasks.PointOnLine(TIP, line)], lambda d: draw_line(d, line)
 
 
 def on_plane(p, R) -> Scene:
     """A plane."""
     plane = tasks.Plane(p - 0.08 * Z, UP)
-    return [tasks.PointOnPlane(TIP, plane)], lambda d: _plane(d, plane)
+    return [tasks.PointOnPlane(TIP, plane)], lambda d: draw_plane(d, plane)
 
 
 def on_circle(p, R) -> Scene:
@@ -106,7 +78,7 @@ def on_circle(p, R) -> Scene:
 def on_cylinder(p, R) -> Scene:
     """A cylinder's mantle."""
     can = tasks.Cylinder(p + [0.0, 0.13, 0.04], UP, 0.06)
-    return [tasks.PointOnCylinder(TIP, can)], lambda d: _cylinder(d, can)
+    return [tasks.PointOnCylinder(TIP, can)], lambda d: draw_cylinder(d, can)
 
 
 def from_point(p, R) -> Scene:
@@ -126,7 +98,7 @@ def from_line(p, R) -> Scene:
     line = tasks.Line(p + [0.0, 0.02, -0.12], ALONG)
 
     def draw(d: Drawing) -> None:
-        _line(d, line)
+        draw_line(d, line)
         for s in (-0.12, 0.0, 0.12):
             centre = line.point + s * line.direction
             d.ring(centre, line.direction, 0.06, dash="3 3", width=1.0)
@@ -137,7 +109,7 @@ def from_line(p, R) -> Scene:
 def from_plane(p, R) -> Scene:
     """A plane, and the distance from it."""
     plane = tasks.Plane(p - 0.13 * Z, UP)
-    return [tasks.DistanceToPlane(TIP, plane, 0.06)], lambda d: _plane(d, plane)
+    return [tasks.DistanceToPlane(TIP, plane, 0.06)], lambda d: draw_plane(d, plane)
 
 
 def _axis(R) -> tasks.Line:
@@ -148,33 +120,35 @@ def line_on_line(p, R) -> Scene:
     """The tool's axis and a line."""
     line = tasks.Line(p + [0.02, 0.08, -0.03], [0.3, 0.25, -1.0])
     task = tasks.LineOnLine(_axis(R), line)
-    return [task], lambda d: _line(d, line, 0.14)
+    return [task], lambda d: draw_line(d, line, 0.14)
 
 
 def parallel(p, R) -> Scene:
     """The tool's axis and a line elsewhere."""
     line = tasks.Line(p + [0.0, 0.13, 0.03], [0.2, 0.35, -1.0])
-    return [tasks.ParallelLines(_axis(R), line)], lambda d: _line(d, line, 0.12)
+    return [tasks.ParallelLines(_axis(R), line)], lambda d: draw_line(d, line, 0.12)
 
 
 def perpendicular(p, R) -> Scene:
     """The tool's axis across a line elsewhere."""
     line = tasks.Line(p + [0.0, 0.02, -0.09], [0.1, 1.0, 0.5])
-    return [tasks.PerpendicularLines(_axis(R), line)], lambda d: _line(d, line, 0.16)
+    return [tasks.PerpendicularLines(_axis(R), line)], lambda d: draw_line(
+        d, line, 0.16
+    )
 
 
 def angle(p, R) -> Scene:
     """The tool's axis at 60 degrees to a line elsewhere."""
     line = tasks.Line(p + [0.0, 0.02, -0.09], [0.1, 1.0, 0.2])
     task = tasks.AngleBetweenLines(_axis(R), line, np.pi / 3.0)
-    return [task], lambda d: _line(d, line, 0.16)
+    return [task], lambda d: draw_line(d, line, 0.16)
 
 
 def in_plane(p, R) -> Scene:
     """The tool's axis in an upright plane."""
     plane = tasks.Plane(p + [0.0, 0.07, 0.03], [0.15, 1.0, 0.3])
     task = tasks.LineInPlane(_axis(R), plane)
-    return [task], lambda d: _plane(d, plane)
+    return [task], lambda d: draw_plane(d, plane)
 
 
 def _face() -> tasks.Plane:
@@ -185,21 +159,21 @@ def parallel_planes(p, R) -> Scene:
     """The tool's face and a plane."""
     plane = tasks.Plane(p - 0.09 * Z, UP)
     task = tasks.ParallelPlanes(_face(), plane, sense="opposite")
-    return [task], lambda d: _plane(d, plane)
+    return [task], lambda d: draw_plane(d, plane)
 
 
 def plane_on_plane(p, R) -> Scene:
     """The tool's face on a plane."""
     plane = tasks.Plane(p - 0.09 * Z, UP)
     task = tasks.PlaneOnPlane(_face(), plane, sense="opposite")
-    return [task], lambda d: _plane(d, plane)
+    return [task], lambda d: draw_plane(d, plane)
 
 
 def rim(p, R) -> Scene:
     """A gripper at the rim of a can."""
     can = tasks.Cylinder(p + [0.02, 0.1, -0.05], Z, 0.06)
     level = tasks.rim_grasp(TIP, can, depth=0.02)
-    return [task for task, _ in level.terms], lambda d: _cylinder(d, can, 0.1)
+    return [task for task, _ in level.terms], lambda d: draw_cylinder(d, can, 0.1)
 
 
 def _bow(p) -> tasks.Curve:
@@ -208,24 +182,17 @@ def _bow(p) -> tasks.Curve:
     return tasks.Curve(p + [0.0, 0.03, -0.08] + bow, normals=Z)
 
 
-def _draw_path(d: Drawing, path: tasks.Path) -> None:
-    s = np.linspace(0.0, path.length, 60)
-    points = [path.at(x).c[0] for x in s]
-    d.line(points[:-1], BLUE, 2.5)
-    d.arrow(points[-4], points[-1], BLUE, 2.5)
-
-
 def on_curve(p, R) -> Scene:
     """A curve in space."""
     curve = _bow(p)
-    return [tasks.PointOnCurve(TIP, curve)], lambda d: _draw_path(d, curve)
+    return [tasks.PointOnCurve(TIP, curve)], lambda d: draw_path(d, curve)
 
 
 def along_path(p, R) -> Scene:
     """The tool's axis at angles to a path."""
     curve = _bow(p)
     task = tasks.AxisAlongPath(TIP, curve, work=0.0, travel=0.35)
-    return [task], lambda d: _draw_path(d, curve)
+    return [task], lambda d: draw_path(d, curve)
 
 
 def alignment(p, R) -> Scene:

@@ -16,7 +16,6 @@ from wbc.hqp import HierarchicalQP
 from wbc.resolver import Answer, Resolver, Status
 from wbc.robot import Robot
 from wbc.solution import Solution
-from wbc.stack import Stack
 from wbc.state import State
 from wbc.task import Task
 from wbc.transition import Bound, Transition
@@ -218,7 +217,6 @@ def resolve(
         UnknownName, InputError: a task does not fit the robot.
         SolverError: the resolver found no solution.
     """
-    stack = Stack(state.robot, Hierarchy.of(hierarchy))
-    stack.update(state)
-    answer = (resolver or HierarchicalQP()).start(stack).solve()
-    return Solution(stack, stack.torque(answer.vdot), answer, answer.status)
+    bound = Bound(state.robot, Hierarchy.of(hierarchy), resolver or HierarchicalQP())
+    torque, answer = bound.tick(state)
+    return Solution(bound.stack, torque, answer, answer.status)

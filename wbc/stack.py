@@ -10,6 +10,7 @@ from wbc import slots
 from wbc.arrays import Array, IntArray
 from wbc.assembly import back_substitute, inverse_dynamics
 from wbc.binding import register
+from wbc.compiled import announce
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.kernel import Kernel
@@ -238,6 +239,7 @@ class Stack:
             self._program = Program(places, state, self.lower.size)
             self._program.enter(table)
             self._runner = self._program.runner
+        announce(self._runner, "the tick")
 
     def acceleration(self, y: Array) -> Array:
         """Vdot = L^-T y, (n,)."""

@@ -93,7 +93,6 @@ class CuttingCell:
         robots: what controllers know: the two arms, or one robot of both.
         tissue: makes the meat's process of (model, data).
         mismatch: how the simulated arms differ from the models; None for not at all.
-        encoders: makes the joint sensors of a view; perfect ones by default.
     """
 
     def __init__(

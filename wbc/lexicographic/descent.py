@@ -61,7 +61,7 @@ def descend(
                 x[j] += step * (w.target[j] - x[j])
             gone = -1
             if row < 0:
-                gone = row = _settle(w, k)
+                gone = row = _settle(A, w, k)
                 if row < 0:
                     break
                 was = side[row]
@@ -138,12 +138,12 @@ def _first_event(
 
 
 @inner
-def _settle(w: Work, k: int) -> int:
+def _settle(A: Array, w: Work, k: int) -> int:
     """The held bound that pulls most; where none does, those that push stay: -1."""
     start, count, order, side = w.start, w.count, w.order, w.side
     fixed, multiplier, size, released = w.fixed, w.multiplier, w.size, w.released
     reach = 1.0 + length(w.x)
-    worst, row = multipliers(w, k, reach), -1
+    worst, row = multipliers(A, w, k, reach), -1
     floor = worst
     if floor >= 0.0:
         for j in range(k):

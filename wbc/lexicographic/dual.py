@@ -70,12 +70,16 @@ def climb(
         d.held[:] = 0
         d.known[:] = 0
         d.number[:] = 0
+        based = False
         while True:
             row, sign = _most_violated(A, lower, upper, w, d, k)
             if row < 0:
                 break
             if rank == own.size and d.number[0] == 0:
                 factorise(w.W, w.slack, w.factor, own, taken, rank)
+            if not based and taken + rank == w.x.size:
+                _make_basis(w, d, taken)
+            based = True
             soft = price if row >= w.start[k] else 0.0
             d.multiplier[row] = 0.0
             while d.held[row] == 0:
@@ -88,7 +92,7 @@ def climb(
                 bound = upper[row] if sign > 0 else lower[row]
                 _step(A, w, d, row, sign, soft, bound, left)
         pushing, broken = _fix(w, d, k, price)
-        if pushing + broken > 0:
+        if pushing + broken > 0 and k + 1 < w.count.size:
             rows = d.pushing[:pushing]
             taken += resolve(A, lower, upper, w, rows, taken, 0.0)
             own = order[w.start[k] : w.start[k] + working_rows(w, k)]
@@ -116,12 +120,11 @@ def _most_violated(
     A: Array, lower: Array, upper: Array, w: Work, d: Dual, k: int
 ) -> tuple[int, int]:
     """The row of levels up to k that is furthest out, and on which side."""
-    side, size, held, column, point = w.side, w.size, d.held, d.column, d.point
-    n, worst, row, sign = point.size, FEASIBILITY * (1.0 + length(d.point)), -1, 0
+    side, size, held, point = w.side, w.size, d.held, d.point
+    worst, row, sign = FEASIBILITY * (1.0 + length(d.point)), -1, 0
     for r in range(w.start[k + 1]):
         if side[r] == 0 and held[r] == 0 and size[r] > 0.0:
-            j = column[r]
-            value = A[r, j] * point[j] if j >= 0 else dot(A[r], point, 0, n)
+            value = _along(A, d, r, point)
             out = max(value - upper[r], lower[r] - value)
             if out > worst * size[r]:
                 worst, row = out / size[r], r
@@ -130,24 +133,56 @@ def _most_violated(
 
 
 @inner
+def _along(A: Array, d: Dual, row: int, x: Array) -> float:
+    """The row times x (n,)."""
+    j = d.column[row]
+    return float(A[row, j] * x[j]) if j >= 0 else dot(A[row], x, 0, x.size)
+
+
+@inner
 def _move(
     A: Array, w: Work, d: Dual, row: int, base: int, rank: int, price: float
 ) -> None:
     """How x answers to a unit force along the row, in the metric of the level."""
-    move, R = d.P[row], w.factor
+    move, n = d.P[row], w.x.size
+    d.known[row] = 1
+    if base + rank == n:
+        y = w.pull[:rank]
+        for j in range(rank):
+            y[j] = _along(A, d, row, d.Z[base + j])
+        _apply_metric(w.factor, y, price)
+        move[:] = 0.0
+        for j in range(rank):
+            add_scaled(y[j], d.Z[base + j], move, 0, n)
+        return
     copy(A[row], move)
     reflect(move, w.V, w.beta, base + rank)
     move[:base] = 0.0
-    y = move[base : base + rank]
-    for j in range(rank):
+    _apply_metric(w.factor, move[base : base + rank], price)
+    reflect_back(move, w.V, w.beta, base + rank)
+
+
+@inner
+def _make_basis(w: Work, d: Dual, base: int) -> None:
+    """The last columns of Q, where the level determines all that was left."""
+    n = w.x.size
+    for j in range(base, n):
+        column = d.Z[j]
+        for i in range(n):
+            column[i] = 1.0 if i == j else 0.0
+        reflect_back(column, w.V, w.beta, n)
+
+
+@inner
+def _apply_metric(R: Array, y: Array, price: float) -> None:
+    """Y <- price (R^T R)^-1 y."""
+    for j in range(y.size):
         y[j] = (y[j] - dot(R[j], y, 0, j)) / R[j, j]
-    for j in range(rank - 1, -1, -1):
+    for j in range(y.size - 1, -1, -1):
         y[j] /= R[j, j]
         add_scaled(-y[j], R[j], y, 0, j)
-    for j in range(rank):
+    for j in range(y.size):
         y[j] *= price
-    reflect_back(move, w.V, w.beta, base + rank)
-    d.known[row] = 1
 
 
 @inner
@@ -160,10 +195,10 @@ def _direction(A: Array, w: Work, d: Dual, row: int, sign: int, soft: float) -> 
     P, L, held, rate, way = d.P, d.L, d.held, d.rate, d.way
     n, count, chosen = w.x.size, d.number[0], d.chosen
     new = L[count]
-    whole = left = dot(A[row], P[row], 0, n) + soft
+    whole = left = _along(A, d, row, P[row]) + soft
     for i in range(count):
         r = chosen[i]
-        along = sign * held[r] * dot(A[r], P[row], 0, n)
+        along = sign * held[r] * _along(A, d, r, P[row])
         new[i] = (along - dot(L[i], new, 0, i)) / L[i, i]
         left -= new[i] * new[i]
     copy(new[:count], rate)
@@ -197,7 +232,7 @@ def _step(
     )
     count, size, gone, step = d.number[0], w.size, -1, np.inf
     if left > 0.0:
-        value = dot(A[row], point, 0, point.size)
+        value = _along(A, d, row, point)
         step = max(sign * (value - bound) - soft * multiplier[row], 0.0) / left
     for i in range(count):
         r = chosen[i]

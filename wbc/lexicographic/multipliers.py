@@ -12,7 +12,8 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, dot, length
+from wbc.lexicographic.sweep import few_left
+from wbc.lexicographic.vectors import add_scaled, dot, length, reflect
 from wbc.lexicographic.work import Work
 
 __all__ = ["FEASIBILITY", "ROUND_OFF", "fault", "multipliers", "slack_floor"]
@@ -49,11 +50,11 @@ def fault(A: Array, lower: Array, upper: Array, w: Work) -> tuple[int, int]:
                 held = True
         if row >= 0:
             return row, right
-    return (_puller(w, 1.0 + reach) if held else -1), 0
+    return (_puller(A, w, 1.0 + reach) if held else -1), 0
 
 
 @inner
-def _puller(w: Work, reach: float) -> int:
+def _puller(A: Array, w: Work, reach: float) -> int:
     """The held bound that pulls most in the first level where one does; -1 if none."""
     side, fixed, p = w.side, w.fixed, w.count.size
     for r in range(side.size):
@@ -61,7 +62,7 @@ def _puller(w: Work, reach: float) -> int:
     for k in range(p + 1):
         row = _against_slack(w, k, reach) if k < p else -1
         if row < 0:
-            floor = multipliers(w, k, reach)
+            floor = multipliers(A, w, k, reach)
             row = _against_multiplier(w, k, floor) if floor >= 0.0 else -1
         if row >= 0:
             return row
@@ -105,7 +106,7 @@ def slack_floor(w: Work, k: int, reach: float) -> float:
 
 
 @inner
-def multipliers(w: Work, k: int, reach: float) -> float:
+def multipliers(A: Array, w: Work, k: int, reach: float) -> float:
     """Multipliers of the rows above level k for its force A_k^T s_k.
 
     k = p asks for the wish for least norm, -x, below all levels.
@@ -122,9 +123,16 @@ def multipliers(w: Work, k: int, reach: float) -> float:
     noise = NOISE
     if k < p:
         rows = order[start[k] : start[k] + count[k]]
+        columns = few_left(w, rows.size, taken)
+        if columns:
+            pull[:] = 0.0
         for r in rows:
-            if w.slack[r] != 0.0:
+            if w.slack[r] != 0.0 and columns:
+                add_scaled(w.slack[r], A[r], pull, 0, pull.size)
+            elif w.slack[r] != 0.0:
                 add_scaled(w.slack[r], W[r], pull, 0, taken)
+        if columns:
+            reflect(pull, w.V, w.beta, taken)
         # Directions that the level has lost still pull, by their singular value.
         scale = w.scale[k]
         noise = scale * (SIGN * _norm(w.slack, rows) + NOISE * scale * reach)

@@ -76,7 +76,6 @@ class Lexicographic:
         self.x, self.side = self._work.x, self._work.side
         self.slack = self._work.slack
         self.sweeps = 0
-        announce(lexicographic, "the solver")
 
     @property
     def ranks(self) -> IntArray:
@@ -99,6 +98,8 @@ class Lexicographic:
             lower: (m,) -inf where there is no bound.
             upper: (m,) +inf where there is no bound; not below `lower`.
         """
+        if self.sweeps == 0:
+            announce(lexicographic, "the solver")
         self.sweeps = lexicographic(A, lower, upper, self.floats, self.integers)
         return self.sweeps > 0
 

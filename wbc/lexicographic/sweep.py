@@ -3,7 +3,8 @@
 For each level the working rows are brought into the coordinates that the levels above
 left, and reduced to lower triangular form by reflections of the columns, the row with
 the largest rest as pivot. Where the rows are independent they are met exactly by
-forward substitution; otherwise the level is a small least-squares problem.
+forward substitution; otherwise the level is a small least-squares problem. Where few
+coordinates are left to many rows, as to a posture, these columns are made instead.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, copy, dot, reflect_back
+from wbc.lexicographic.vectors import add_scaled, copy, dot, reflect, reflect_back
 from wbc.lexicographic.work import Work
 
-__all__ = ["factorise", "resolve", "sweep", "take_point", "working_rows"]
+__all__ = ["factorise", "few_left", "resolve", "sweep", "take_point", "working_rows"]
 
 CANCELLED = 1e-4
 """A square that differences have brought down to this share is summed afresh."""
+FEW = 4
+"""Columns are made where there are so many times more rows."""
 
 
 @inner
@@ -37,7 +40,10 @@ def sweep(
     for k in range(k0, k1):
         w.count[k] = working_rows(w, k)
         rows = w.order[w.start[k] : w.start[k] + w.count[k]]
-        taken += resolve(A, lower, upper, w, rows, taken, tolerance * w.scale[k])
+        rank = resolve(A, lower, upper, w, rows, taken, tolerance * w.scale[k])
+        if few_left(w, rows.size, taken):
+            _complete(A, w, rows[:rank], taken)
+        taken += rank
         w.first[k + 1] = taken
     return int(taken)
 
@@ -81,23 +87,64 @@ def resolve(
     Returns:
         how many coordinates they take.
     """
-    W, V, beta, c, slack = w.W, w.V, w.beta, w.c, w.slack
-    side, rest, n = w.side, w.rest, w.c.size
+    W, c, slack, rest = w.W, w.c, w.slack, w.rest
+    if few_left(w, rows.size, taken):
+        _make_columns(A, w, rows, taken)
+    else:
+        _reflect_rows(A, w, rows, taken)
+    for r in rows:
+        slack[r] += upper[r] if w.side[r] == 1 else lower[r]
+        rest[r] = dot(W[r], W[r], taken, c.size)
+    rank = _triangular(W, w.V, w.beta, rest, w.size, rows, taken, lost * lost)
+    if 0 < rank < rows.size:
+        _least_squares(W, c, slack, w.factor, rows, taken, rank)
+    elif rank > 0:
+        _substitute(W, c, slack, rows, taken)
+    return rank
+
+
+@inner
+def few_left(w: Work, rows: int, taken: int) -> bool:
+    """Whether only the columns not taken yet are made of so many rows."""
+    return bool(taken > 0 and FEW * (w.c.size - taken) < rows)
+
+
+@inner
+def _reflect_rows(A: Array, w: Work, rows: IntArray, taken: int) -> None:
+    """W <- A Q, and minus what the coordinates taken make of the rows into `slack`."""
+    W, V, beta, n = w.W, w.V, w.beta, w.c.size
     for r in rows:
         copy(A[r], W[r])
     for i in range(taken):
         for r in rows:
             add_scaled(-beta[i] * dot(W[r], V[i], i, n), V[i], W[r], i, n)
     for r in rows:
-        bound = upper[r] if side[r] == 1 else lower[r]
-        slack[r] = bound - dot(W[r], c, 0, taken)
-        rest[r] = dot(W[r], W[r], taken, n)
-    rank = _triangular(W, V, beta, rest, w.size, rows, taken, lost * lost)
-    if 0 < rank < rows.size:
-        _least_squares(W, c, slack, w.factor, rows, taken, rank)
-    elif rank > 0:
-        _substitute(W, c, slack, rows, taken)
-    return rank
+        w.slack[r] = -dot(W[r], w.c, 0, taken)
+
+
+@inner
+def _make_columns(A: Array, w: Work, rows: IntArray, taken: int) -> None:
+    """The same, but of A Q only the columns that are not taken."""
+    n, column = w.c.size, w.pull
+    take_point(w, column, taken)
+    for r in rows:
+        w.slack[r] = -dot(A[r], column, 0, n)
+    for j in range(taken, n):
+        for i in range(n):
+            column[i] = 1.0 if i == j else 0.0
+        reflect_back(column, w.V, w.beta, taken)
+        for r in rows:
+            w.W[r, j] = dot(A[r], column, 0, n)
+
+
+@inner
+def _complete(A: Array, w: Work, pivots: IntArray, taken: int) -> None:
+    """The other columns of A Q, for the rows that multipliers are made of."""
+    row = w.pull
+    for r in pivots:
+        copy(A[r], row)
+        reflect(row, w.V, w.beta, taken)
+        copy(row[:taken], w.W[r])
 
 
 @inner

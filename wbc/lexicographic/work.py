@@ -87,6 +87,7 @@ class Dual(NamedTuple):
         pushing: (m,) rows of higher levels that the level leaves pushing.
         column: (m,) the unknown that a row bounds; -1 if it has not just one.
         P: (m, n) moves: how x answers to a force along a row.
+        Z: (n, n) columns of Q, as rows, where a level determines all that was left.
         L: (m, m) Cholesky factor of the rows held, in the level's metric.
         point: (n,) its x.
         way: (n,) direction of a step.
@@ -101,6 +102,7 @@ class Dual(NamedTuple):
     pushing: IntArray
     column: IntArray
     P: Array
+    Z: Array
     L: Array
     point: Array
     way: Array
@@ -125,7 +127,7 @@ class Memory:
 
     def __init__(self, sizes: Sequence[int], n: int) -> None:
         p, m = len(sizes), int(sum(sizes))
-        self.floats = np.zeros(HEAD + m * (3 * n + m + 7) + n * (n + 7) + p)
+        self.floats = np.zeros(HEAD + m * (3 * n + m + 7) + n * (2 * n + 7) + p)
         self.integers = np.zeros(SIZES + 3 * p + 2 + 11 * m + 1, np.int_)
         self.integers[:3] = p, m, n
         self.views = python(unpack)(self.floats, self.integers)
@@ -179,6 +181,7 @@ def unpack_dual(floats: Array, integers: IntArray) -> Dual:
     column = integers[i : i + m]
     f = HEAD + p + m * (2 * n + 5) + n * (n + 5)
     P, f = floats[f : f + m * n].reshape((m, n)), f + m * n
+    Z, f = floats[f : f + n * n].reshape((n, n)), f + n * n
     L, f = floats[f : f + m * m].reshape((m, m)), f + m * m
     point, f = floats[f : f + n], f + n
     way, f = floats[f : f + n], f + n
@@ -186,5 +189,5 @@ def unpack_dual(floats: Array, integers: IntArray) -> Dual:
     rate = floats[f : f + m]
     return Dual(
         number, chosen, held, known, pushing, column,
-        P, L, point, way, multiplier, rate,
+        P, Z, L, point, way, multiplier, rate,
     )  # fmt: skip
