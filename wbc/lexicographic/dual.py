@@ -18,15 +18,9 @@ import numpy as np
 
 from wbc.arrays import Array
 from wbc.compiled import inner
+from wbc.lexicographic.moves import along, make_basis, move
 from wbc.lexicographic.sweep import factorise, resolve, take_point, working_rows
-from wbc.lexicographic.vectors import (
-    add_scaled,
-    copy,
-    dot,
-    length,
-    reflect,
-    reflect_back,
-)
+from wbc.lexicographic.vectors import add_scaled, copy, dot, length
 from wbc.lexicographic.work import Dual, Work
 
 __all__ = ["climb"]
@@ -78,7 +72,7 @@ def climb(
             if rank == own.size and d.number[0] == 0:
                 factorise(w.W, w.slack, w.factor, own, taken, rank)
             if not based and taken + rank == w.x.size:
-                _make_basis(w, d, taken)
+                make_basis(w, d, taken)
             based = True
             soft = price if row >= w.start[k] else 0.0
             d.multiplier[row] = 0.0
@@ -87,7 +81,7 @@ def climb(
                 if steps > most:
                     return -steps
                 if not d.known[row]:
-                    _move(A, w, d, row, taken, rank, price)
+                    move(A, w, d, row, taken, rank, price)
                 left = _direction(A, w, d, row, sign, soft)
                 bound = upper[row] if sign > 0 else lower[row]
                 _step(A, w, d, row, sign, soft, bound, left)
@@ -124,65 +118,12 @@ def _most_violated(
     worst, row, sign = FEASIBILITY * (1.0 + length(d.point)), -1, 0
     for r in range(w.start[k + 1]):
         if side[r] == 0 and held[r] == 0 and size[r] > 0.0:
-            value = _along(A, d, r, point)
+            value = along(A, d, r, point)
             out = max(value - upper[r], lower[r] - value)
             if out > worst * size[r]:
                 worst, row = out / size[r], r
                 sign = 1 if value > upper[r] else -1
     return row, sign
-
-
-@inner
-def _along(A: Array, d: Dual, row: int, x: Array) -> float:
-    """The row times x (n,)."""
-    j = d.column[row]
-    return float(A[row, j] * x[j]) if j >= 0 else dot(A[row], x, 0, x.size)
-
-
-@inner
-def _move(
-    A: Array, w: Work, d: Dual, row: int, base: int, rank: int, price: float
-) -> None:
-    """How x answers to a unit force along the row, in the metric of the level."""
-    move, n = d.P[row], w.x.size
-    d.known[row] = 1
-    if base + rank == n:
-        y = w.pull[:rank]
-        for j in range(rank):
-            y[j] = _along(A, d, row, d.Z[base + j])
-        _apply_metric(w.factor, y, price)
-        move[:] = 0.0
-        for j in range(rank):
-            add_scaled(y[j], d.Z[base + j], move, 0, n)
-        return
-    copy(A[row], move)
-    reflect(move, w.V, w.beta, base + rank)
-    move[:base] = 0.0
-    _apply_metric(w.factor, move[base : base + rank], price)
-    reflect_back(move, w.V, w.beta, base + rank)
-
-
-@inner
-def _make_basis(w: Work, d: Dual, base: int) -> None:
-    """The last columns of Q, where the level determines all that was left."""
-    n = w.x.size
-    for j in range(base, n):
-        column = d.Z[j]
-        for i in range(n):
-            column[i] = 1.0 if i == j else 0.0
-        reflect_back(column, w.V, w.beta, n)
-
-
-@inner
-def _apply_metric(R: Array, y: Array, price: float) -> None:
-    """Y <- price (R^T R)^-1 y."""
-    for j in range(y.size):
-        y[j] = (y[j] - dot(R[j], y, 0, j)) / R[j, j]
-    for j in range(y.size - 1, -1, -1):
-        y[j] /= R[j, j]
-        add_scaled(-y[j], R[j], y, 0, j)
-    for j in range(y.size):
-        y[j] *= price
 
 
 @inner
@@ -195,11 +136,11 @@ def _direction(A: Array, w: Work, d: Dual, row: int, sign: int, soft: float) -> 
     P, L, held, rate, way = d.P, d.L, d.held, d.rate, d.way
     n, count, chosen = w.x.size, d.number[0], d.chosen
     new = L[count]
-    whole = left = _along(A, d, row, P[row]) + soft
+    whole = left = along(A, d, row, P[row]) + soft
     for i in range(count):
         r = chosen[i]
-        along = sign * held[r] * _along(A, d, r, P[row])
-        new[i] = (along - dot(L[i], new, 0, i)) / L[i, i]
+        share = sign * held[r] * along(A, d, r, P[row])
+        new[i] = (share - dot(L[i], new, 0, i)) / L[i, i]
         left -= new[i] * new[i]
     copy(new[:count], rate)
     for j in range(n):
@@ -232,7 +173,7 @@ def _step(
     )
     count, size, gone, step = d.number[0], w.size, -1, np.inf
     if left > 0.0:
-        value = _along(A, d, row, point)
+        value = along(A, d, row, point)
         step = max(sign * (value - bound) - soft * multiplier[row], 0.0) / left
     for i in range(count):
         r = chosen[i]
