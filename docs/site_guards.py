@@ -112,7 +112,7 @@ def singular_damping(robot: Robot) -> Picture:
         plot.text((120.0, 50.0 + 13.0 * i), words, colour)
     caption = (
         "Rows: one a direction of the joints [rad/s]. The largest joint acceleration "
-        "per unit that a pose asks for, near a straight wrist."
+        "per unit that a pose asks for, near a straight wrist; cut off at 40."
     )
     return plot.svg("SingularDamping"), caption
 
