@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import site_guards
 import site_plots
 import site_scenes
 from site_drawing import INK, ORANGE, Drawing
@@ -25,12 +26,13 @@ TOOL = 0.13
 ARM_LENGTH = 0.15
 """A turn by 1 rad counts as much as this shift [m]."""
 ROBOT = racer.load()
+PLOTS = {**site_plots.PLOTS, **site_guards.PLOTS}
 POSTURE = np.radians([0.0, -4.0, -112.0, 0.0, 72.0, 180.0])
 
 
 def names() -> list[str]:
     """Names of all tasks that have one."""
-    return [*site_scenes.SCENES, *site_plots.PLOTS]
+    return [*site_scenes.SCENES, *PLOTS]
 
 
 def of(name: str) -> tuple[str, str]:
@@ -39,8 +41,8 @@ def of(name: str) -> tuple[str, str]:
     Raises:
         KeyError: there is none.
     """
-    if name in site_plots.PLOTS:
-        return site_plots.PLOTS[name](ROBOT)
+    if name in PLOTS:
+        return PLOTS[name](ROBOT)
     state = ROBOT.state(POSTURE)
     F = state.frame("torch_tip")
     tasks, draw = site_scenes.SCENES[name](F.p, F.R)

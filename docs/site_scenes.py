@@ -48,6 +48,19 @@ def pose(p, R) -> Scene:
     return [tasks.FramePose(TIP, goal, turned)], lambda d: draw_triad(d, goal, turned)
 
 
+def knife(p, R) -> Scene:
+    """The plane that a blade should lie in, with the point for its tip."""
+    goal, turned = p + [0.0, 0.1, -0.03], _turned(R, -0.35, 0.15, 0.3)
+    task = tasks.KnifePose(TIP, goal, turned)
+    plane = tasks.Plane(goal, turned[:, 1])
+
+    def draw(d: Drawing) -> None:
+        draw_plane(d, plane, 0.1)
+        d.dot(goal, BLUE, 5.0)
+
+    return [task], draw
+
+
 def on_point(p, R) -> Scene:
     """A point."""
     goal = p + [0.02, 0.1, -0.04]
@@ -207,6 +220,7 @@ SCENES: dict[str, Callable[..., Scene]] = {
     "FramePosition": position,
     "FrameOrientation": orientation,
     "FramePose": pose,
+    "KnifePose": knife,
     "PointOnPoint": on_point,
     "PointOnLine": on_line,
     "PointOnPlane": on_plane,
