@@ -74,18 +74,21 @@ class Log:
         if self._world:
             self.qpos[tick] = d.qpos
         for name, wrench in seen.wrenches.items():
-            kept = self.wrenches.setdefault(name, np.zeros((self.t.size, 6)))
-            kept[tick] = wrench
+            if name not in self.wrenches:
+                self.wrenches[name] = np.zeros((self.t.size, 6))
+            self.wrenches[name][tick] = wrench
         for name, site in self._sites.items():
             self.p[name][tick] = d.site_xpos[site]
             self.R[name][tick] = d.site_xmat[site].reshape(3, 3)
         if solution.ok:
             self._keep_ranks(tick, solution.ranks)
             for name, error in solution.error_norms():
-                kept = self.errors.setdefault(name, np.full(self.t.size, np.nan))
-                kept[tick] = error
+                if name not in self.errors:
+                    self.errors[name] = np.full(self.t.size, np.nan)
+                self.errors[name][tick] = error
             for name in solution.active_rows():
-                self.active.setdefault(name, np.zeros(self.t.size, dtype=bool))
+                if name not in self.active:
+                    self.active[name] = np.zeros(self.t.size, dtype=bool)
                 self.active[name][tick] = True
 
     def _keep_ranks(self, tick: int, ranks: tuple[int, ...]) -> None:
