@@ -151,9 +151,11 @@ def slsqp(robot: Robot, goal, start: np.ndarray, first: np.ndarray, low, high):
             found.append(rows.error.copy())
         return np.concatenate(found)
 
+    # At the optimum itself its line search may find no way down and call that failure.
+    beside = first + 0.01 * np.random.default_rng(0).normal(size=first.size)
     return minimize(
         lambda q: 0.5 * float((q - start) @ (q - start)),
-        first,
+        np.clip(beside, low, high),
         jac=lambda q: q - start,
         constraints=[{"type": "eq", "fun": error}],
         bounds=list(zip(low, high, strict=True)),
