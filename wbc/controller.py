@@ -69,7 +69,7 @@ class Controller:
         self._adopt(Bound(robot, self.hierarchy, self.resolver))
         self._transition: Transition | None = None
         self._state = State(robot, self.dt)
-        self._last = robot.q_home
+        self._last, self._shape = robot.q_home, (robot.nv,)
         self._damping = np.diag(robot.state(robot.q_home).M) * FALLBACK_DAMPING
         self._no_wrench: dict[str, Array] = {}
 
@@ -92,9 +92,10 @@ class Controller:
             InputError: q or v has the wrong shape, which is no sensor fault.
         """
         q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
-        n = self.robot.nv
-        if q.shape != (n,) or v.shape != (n,):
-            raise InputError(f"q and v have shapes {q.shape}, {v.shape}; need ({n},).")
+        if q.shape != self._shape or v.shape != self._shape:
+            raise InputError(
+                f"q and v have shapes {q.shape}, {v.shape}; need {self._shape}."
+            )
         forces, t = self._no_wrench, float(t)
         if wrenches:
             forces = {k: _wrench(k, w) for k, w in wrenches.items()}
@@ -161,8 +162,8 @@ class Controller:
                 torque, answer, share = self._pass_on(self._transition)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        self._state.commanded = torque.copy()
-        return Solution(self._stack, torque, answer, answer.status, share=share)
+        self._state.commanded = torque
+        return Solution(self._stack, torque, answer, answer.status, "", share)
 
     def _pass_on(self, transition: Transition) -> tuple[Array, Answer, float]:
         """A tick of a change: torques, their source, share of the newest hierarchy."""
@@ -174,7 +175,8 @@ class Controller:
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        return measured(q, v, t) and all(finite(w) for w in wrenches.values())
+        good = measured(q, v, t)
+        return good and (not wrenches or all(finite(w) for w in wrenches.values()))
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
         """Gravity compensation and damping within the torque limits.

@@ -21,6 +21,7 @@ from wbc.state import State
 
 __all__ = ["HierarchicalQP", "HierarchyResult", "solve_hierarchy"]
 
+SOLVED, INCOMPLETE = Status.SOLVED, Status.INCOMPLETE
 AT_BOUND = 1e-9
 """A row this close to a bound, relative to its value, counts as active."""
 
@@ -56,19 +57,21 @@ class _Compiled(Solver):
 
     def __init__(self, stack: Stack) -> None:
         sizes = [where.stop - where.start for where in stack.levels]
-        self._stack, self._solver = stack, Lexicographic(sizes, stack.robot.nv)
+        n, m = stack.robot.nv, stack.lower.size
+        self._stack, self._solver = stack, Lexicographic(sizes, n)
+        self._torque, self._vdot = slice(n), slice(n, 2 * n)
+        self._slack, self._ranks = slice(2 * n, 2 * n + m), slice(2 * n + m, None)
         stack.connect(self._solver.floats, self._solver.integers)
 
     def tick(self, stack: Stack, state: State) -> Answer:
         """The same in one compiled call."""
         found, done = stack.resolve(state)
-        n, m = stack.robot.nv, stack.lower.size
         return Answer(
-            found[n : 2 * n],
-            found[2 * n + m :],
-            Status.SOLVED if done else Status.INCOMPLETE,
-            found[2 * n : 2 * n + m],
-            found[:n],
+            found[self._vdot],
+            found[self._ranks],
+            SOLVED if done else INCOMPLETE,
+            found[self._slack],
+            found[self._torque],
         )
 
     def solve(self) -> Answer:

@@ -182,9 +182,11 @@ class Stack:
         """
         out = np.empty(self._answer_size)
         outcome = self._run(state, out)
-        if outcome not in (slots.SOLVED, slots.UNSOLVED):
+        if outcome == slots.SOLVED:
+            return out, True
+        if outcome != slots.UNSOLVED:
             self._complain(outcome)
-        return out, outcome == slots.SOLVED
+        return out, False
 
     def _run(self, state: State, out: Array) -> int:
         self.v = state.v
