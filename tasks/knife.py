@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
-from wbc import PD, FrameState, Kernel, Robot, Rows, State
+from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import ROTATION_TOLERANCE, Array
 from wbc.errors import InputError, UnknownName
 from wbc.kernel import NO_TABLE
@@ -134,8 +134,7 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        F: FrameState = state.frame(self.sensor_frame)
-        torque += F.J.T @ measured
+        torque += state.jacobian(self.sensor_frame).T @ measured
 
 
 def _turned(R: Array) -> float:

@@ -7,6 +7,7 @@ from abc import abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.kernels.touch import in_axes
 from wbc import FrameState, Robot, Rows, State, Task
 from wbc.arrays import Array, rotation
 from wbc.errors import InputError, SolverError
@@ -58,7 +59,7 @@ class TouchTask(Task):
         Raises:
             InputError: no rotation; the axes stay as they were.
         """
-        self._R = rotation(axes, f"axes of '{self.name}'")
+        self._R = np.array(rotation(axes, f"axes of '{self.name}'"))
 
     @property
     def axes(self) -> Array:
@@ -92,11 +93,7 @@ class TouchTask(Task):
     def _kinematics(self, state: State, rows: Rows) -> FrameState:
         """Write A and drift, and the rates of a target at rest."""
         F = state.frame(self.frame)
-        n = state.robot.nv
-        for k in range(0, self.size, 3):
-            rows.A[k : k + 3] = self._R.T @ F.J[k : k + 3].reshape(3, n)
-        rows.drift[:] = self._split(F.drift)
-        rows.rate[:] = self._split(F.V)
+        in_axes(self._R, F.J, F.V, F.drift, rows.A, rows.rate, rows.drift)
         return F
 
     def _wrench(self, state: State, F: FrameState) -> Array:
@@ -118,7 +115,7 @@ class TouchTask(Task):
             )
         self._heard = True
         f0, f1, f2 = measured[:3].tolist()
-        a0, a1, a2 = (state.frame(self.sensor_frame).p - F.p).tolist()
+        a0, a1, a2 = (state.position(self.sensor_frame) - F.p).tolist()
         wrench = measured.copy()
         wrench[3] += a1 * f2 - a2 * f1
         wrench[4] += a2 * f0 - a0 * f2
