@@ -162,4 +162,4 @@ class ArmCell(Cell):
     @property
     def truth(self) -> tuple[Array, Array]:
         """Real positions and velocities (n,) of the arm."""
-        return self.data.qpos[self._qpos].copy(), self.data.qvel[self._dofs].copy()
+        return self.data.qpos[self._qpos], self.data.qvel[self._dofs]
