@@ -205,6 +205,23 @@ def test_a_bound_that_becomes_an_equality_is_one():
     assert_allclose(projection.y, [0.0, 2.0], atol=ROUND_OFF)
 
 
+def test_without_rows_nothing_moves():
+    projection = Projection([0], 3)
+    none = np.zeros(0)
+    assert projection.solve(np.zeros((0, 3)), none, none, np.zeros(3))
+    assert projection.y.tolist() == [0.0, 0.0, 0.0]
+    assert projection.ranks.tolist() == [0]
+
+
+def test_bounds_that_exclude_each_other_meet_half_way():
+    A = np.array([[1.0, 0.0], [1.0, 0.0]])
+    projection = Projection([2], 2)
+    lower, upper = np.array([2.0, -INF]), np.array([INF, 1.0])
+    assert projection.solve(A, lower, upper, np.zeros(2))
+    assert projection.side.tolist() == [-1, 1]
+    assert_allclose(projection.y, [1.5, 0.0], atol=ROUND_OFF)
+
+
 def test_a_row_of_zeros_that_cannot_be_met_stops_nothing():
     levels = [(np.zeros((1, 2)), np.ones(1), np.full(1, INF))]
     levels.append((np.eye(2), np.ones(2), np.ones(2)))

@@ -47,7 +47,7 @@ class Projection:
         work.damping[:] = (
             (1.0, 0.0) if damping is None else (damping.threshold, damping.factor)
         )
-        announce(saturate, "the projection")
+        self._started = False
 
     def solve(self, A: Array, lower: Array, upper: Array, rest: Array) -> bool:
         """Hold violated bounds and release those that pull, until neither is left.
@@ -71,5 +71,8 @@ class Projection:
     def _run(
         self, A: Array, lower: Array, upper: Array, rest: Array, release: bool
     ) -> int:
+        if not self._started:
+            announce(saturate, "the projection")
+            self._started = True
         memory = self._memory
         return saturate(A, lower, upper, rest, memory.floats, memory.integers, release)
