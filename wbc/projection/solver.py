@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import final
 
+import numpy as np
+
 from wbc.arrays import Array
 from wbc.compiled import announce
 from wbc.damped import DampedInverse
@@ -47,7 +49,9 @@ class Projection:
         work.damping[:] = (
             (1.0, 0.0) if damping is None else (damping.threshold, damping.factor)
         )
-        self._started = False
+        announce(saturate, "the projection")
+        m = work.side.size  # compile now, by solving nothing, not within a loop
+        self.solve(np.zeros((m, n)), np.zeros(m), np.zeros(m), np.zeros(n))
 
     def solve(self, A: Array, lower: Array, upper: Array, rest: Array) -> bool:
         """Hold violated bounds and release those that pull, until neither is left.
@@ -71,8 +75,5 @@ class Projection:
     def _run(
         self, A: Array, lower: Array, upper: Array, rest: Array, release: bool
     ) -> int:
-        if not self._started:
-            announce(saturate, "the projection")
-            self._started = True
         memory = self._memory
         return saturate(A, lower, upper, rest, memory.floats, memory.integers, release)
