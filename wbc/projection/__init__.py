@@ -7,7 +7,7 @@ gives
 
 from singular vectors alone (`basis`, `recursion`); the rows of a hierarchical QP's
 working set are factorised otherwise, so that either method can judge the other. Bounds
-are held and released by what the result does to them (`saturation`).
+are held and released by what the result does to them (`active`).
 """
 
 from wbc.projection.solver import Projection

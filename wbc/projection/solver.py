@@ -10,7 +10,7 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.compiled import announce
 from wbc.damped import DampedInverse
-from wbc.projection.saturation import saturate
+from wbc.projection.active import saturate
 from wbc.projection.work import Memory
 
 __all__ = ["Projection"]
