@@ -23,7 +23,7 @@ from sims.report.replay import Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import Decision, run
-from sims.view import Display
+from sims.view import Display, nearer
 from wbc import Controller
 from wbc.arrays import Array
 
@@ -54,7 +54,8 @@ def _run(options: Options) -> Outcome:
     arm = racer.load("probe")
     cell = constraints.cell(arm, mismatch=options.mismatch, seed=options.seed)
     trials: dict[str, Trial] = {}
-    with Display(view=options.view, video=options.video, camera=_camera()) as display:
+    close = nearer(_camera(), 1.4, [0.78, 0, 0.6])
+    with Display(view=options.view, video=options.video, camera=close) as display:
         display.attach(cell)
         for case in chain.from_iterable(family.cases(arm) for family in FAMILIES):
             trials[case.name] = display.play(

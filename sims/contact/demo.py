@@ -25,7 +25,7 @@ from sims.report.replay import Replay, Trace
 from sims.report.snapshot import render
 from sims.resolvers import make_resolver
 from sims.run import Decision, run
-from sims.view import Display
+from sims.view import Display, nearer
 from tasks import FramePose
 from wbc import Controller, Hierarchy, InputError, Robot, solve_pose
 from wbc.arrays import Array
@@ -63,7 +63,8 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
     """
     arm = racer.load("peg")
     cell = contact.cell(arm, mismatch=options.mismatch, seed=options.seed)
-    with Display(view=options.view, video=options.video, camera=_camera()) as display:
+    close = nearer(_camera(), 1.0, [0.82, 0, 0.5])
+    with Display(view=options.view, video=options.video, camera=close) as display:
         display.attach(cell)
         attempts = [
             display.play(

@@ -20,7 +20,7 @@ from sims.demo import Demo, Options, Outcome
 from sims.log import shared_metrics
 from sims.metrics import Metric
 from sims.mismatch import Mismatch
-from sims.view import Display
+from sims.view import Display, nearer
 from wbc import UnknownName
 from wbc.arrays import Array
 
@@ -53,7 +53,8 @@ def _run(options: Options) -> Outcome:
     """Cut one animal apart."""
     trial = trial_of(options)
     cell = trial.cell()
-    with Display(view=options.view, video=options.video, camera=camera()) as display:
+    close = nearer(camera(), 1.1, [0.45, 0.20, 0.40])
+    with Display(view=options.view, video=options.video, camera=close) as display:
         display.attach(cell)
         run = display.play("cutting", partial(_cut, trial, cell, options, display))
     if run.job.stopped is not None:

@@ -23,7 +23,7 @@ from sims.log import shared_metrics
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import Decision, run
-from sims.view import Display
+from sims.view import Display, nearer
 from wbc import Controller, Robot
 
 __all__ = ["DEMO", "run_cases"]
@@ -36,7 +36,8 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
     """Grasp the first `count` cylinders of the seed, one after another."""
     arm = racer.load("gripper")
     results = []
-    with Display(view=options.view, video=options.video, camera=camera()) as display:
+    close = nearer(camera(), 1.5, [0.68, 0.06, 0.52])
+    with Display(view=options.view, video=options.video, camera=close) as display:
         for case in seeded_cases(arm, options.seed, count):
             cell = grasping.cell(
                 arm, case.cylinder, mismatch=options.mismatch, seed=options.seed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sims.view.display import Display, WindowClosed
+from sims.view.display import Display, WindowClosed, nearer
 from sims.view.geometry import geometry_of
 from sims.view.jogger import Jogger
 from sims.view.marks import Connector, Mark, Solid
@@ -18,4 +18,5 @@ __all__ = [
     "WindowClosed",
     "check_video",
     "geometry_of",
+    "nearer",
 ]

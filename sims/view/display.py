@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import TypeVar, final
 
 import mujoco
+from numpy.typing import ArrayLike
 
 from sims.run import Decision
 from sims.view.jogger import Jogger
@@ -23,7 +24,7 @@ from sims.view.window import (
     need_display,
 )
 
-__all__ = ["Display", "WindowClosed"]
+__all__ = ["Display", "WindowClosed", "nearer"]
 
 T = TypeVar("T")
 
@@ -135,6 +136,15 @@ class Display:
             print(f"wrote {self._video.path}, {self._video.count} frames")
         else:
             self._video.abandon()
+
+
+def nearer(
+    camera: mujoco.MjvCamera, distance: float, lookat: ArrayLike
+) -> mujoco.MjvCamera:
+    """The same look at a point (3,) [m] from so near [m] that tasks can be seen."""
+    close = copy.copy(camera)
+    close.distance, close.lookat[:] = distance, lookat
+    return close
 
 
 def _can_open() -> bool:

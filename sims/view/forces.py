@@ -15,9 +15,9 @@ from wbc.arrays import Array
 __all__ = ["Contacts", "felt", "force_arrow"]
 
 CONTACT: Final[Colour] = (0.90, 0.55, 0.0, 1.0)
-SCALE: Final = 0.003
+SCALE: Final = 0.005
 """Length of an arrow for each newton [m/N]."""
-LONGEST: Final = 0.4
+LONGEST: Final = 0.35
 """[m]"""
 LEAST: Final = 0.5
 """Smaller forces are not drawn [N]."""
@@ -56,19 +56,30 @@ class Contacts:
         self._model, self._copy = model, mujoco.MjData(model)
 
     def marks(self, data: mujoco.MjData) -> list[Mark]:
-        """Arrows at every contact, in the direction of the contact's normal.
+        """An arrow for each two bodies that touch: what the second one feels.
 
-        As the engine has it, from the first body to the second; each shows what the
-        second one feels.
+        It is the sum over all their contacts, in the middle of these by their forces.
         """
         if not data.ncon:
             return []
         mujoco.mj_copyData(self._copy, self._model, data)
         mujoco.mj_forward(self._model, self._copy)
-        wrench, marks = np.zeros(6), []
+        sums: dict[tuple[int, int], Array] = {}
         for i in range(self._copy.ncon):
-            contact = self._copy.contact[i]
-            mujoco.mj_contactForce(self._model, self._copy, i, wrench)
-            force = contact.frame.reshape(3, 3).T @ wrench[:3]
-            marks += force_arrow(contact.pos.copy(), force, CONTACT)
-        return marks
+            pair, moment = self._contact(i)
+            sums[pair] = sums.get(pair, 0.0) + moment
+        return [
+            mark
+            for total in sums.values()
+            if total[6] > LEAST
+            for mark in force_arrow(total[3:6] / total[6], total[:3], CONTACT)
+        ]
+
+    def _contact(self, i: int) -> tuple[tuple[int, int], Array]:
+        """Its bodies; its force (3,), place times size of the force (3,), that size."""
+        contact, wrench = self._copy.contact[i], np.zeros(6)
+        mujoco.mj_contactForce(self._model, self._copy, i, wrench)
+        force = contact.frame.reshape(3, 3).T @ wrench[:3]
+        size = np.linalg.norm(force)
+        first, second = (int(self._model.geom_bodyid[g]) for g in contact.geom)
+        return (first, second), np.array([*force, *(size * contact.pos), size])

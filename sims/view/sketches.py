@@ -70,10 +70,7 @@ def pointing(p: Array, actual: Array, wanted: Array, error: float) -> list[Mark]
 
 def triad(p: Array, R: Array, opacity: float = 1.0) -> list[Mark]:
     """The axes R (3, 3) of a frame at p (3,)."""
-    return [
-        arrow(p, p + AXIS * R[:, i], faint(AXES[i], opacity))
-        for i in range(3)
-    ]
+    return [arrow(p, p + AXIS * R[:, i], faint(AXES[i], opacity)) for i in range(3)]
 
 
 def long_line(p: Array, direction: Array) -> Connector:

@@ -9,6 +9,7 @@ from typing import Any, Final, final
 
 import mujoco
 
+from sims.view.caption import Caption
 from sims.view.jogger import Jogger
 from sims.view.overlay import Frame, World
 from sims.view.painting import paint
@@ -17,7 +18,10 @@ from wbc.errors import WbcError
 __all__ = ["KEYS", "NoWindow", "Restart", "Window", "WindowClosed", "need_display"]
 
 FRAME: Final = 1.0 / 60.0
-"""Between two pictures [s]."""
+LONGEST: Final = 0.25
+"""Least and greatest time between two pictures [s]."""
+WORDS: Final = 0.1
+"""Between two changes of the words [s]."""
 PATIENCE: Final = 5.0
 """With a window that closes [s]."""
 PAUSE, RESTART = ord(" "), 259
@@ -59,7 +63,8 @@ class Window:
     ) -> None:
         self._data, self._jogger = world.data, jogger
         self._paused = self._restart = False
-        self._due, self._shown = 0.0, time.perf_counter()
+        self._written, self._write_at = (False, "", ""), 0.0
+        self._due, self._shown = world.data.time, (world.data.time, time.perf_counter())
         threads = set(threading.enumerate())
         self._window: Any = self._launch(world)
         self._threads = set(threading.enumerate()) - threads
@@ -99,30 +104,35 @@ class Window:
 
     def due(self) -> bool:
         """Whether it is time for a picture; a clock set back starts afresh."""
-        if self._data.time < self._due - FRAME:
+        if self._data.time < self._shown[0]:
             self._due = self._data.time
         return bool(self._data.time >= self._due)
 
     def show(self, frame: Frame) -> None:
-        """Show it, and keep real time; while it is paused, do not return.
+        """Show it in real time; while it is paused, do not return.
+
+        Where drawing is slow, pictures are left out rather than time stretched.
 
         Raises:
             Restart: the operator wants the run from its start.
             WindowClosed: the window is gone.
         """
-        self._due = self._data.time + FRAME
+        t, then = self._data.time, self._shown
+        ahead = (t - then[0]) - (time.perf_counter() - then[1])
+        time.sleep(min(max(ahead, 0.0), LONGEST))
+        self._shown = t, time.perf_counter()
         self._draw(frame)
+        taken = time.perf_counter() - self._shown[1]
+        self._due = t + min(max(FRAME, taken), LONGEST)
         while self._paused and self._window.is_running() and not self._restart:
             time.sleep(FRAME)
             self._draw(frame)
+            self._shown = t, time.perf_counter()
         if not self._window.is_running():
             raise WindowClosed
         if self._restart:
             self._restart = self._paused = False
             raise Restart
-        late = time.perf_counter() - self._shown
-        time.sleep(max(0.0, FRAME - late))
-        self._shown = time.perf_counter()
 
     def _draw(self, frame: Frame) -> None:
         """Hand the state and its overlay over to the window's own thread."""
@@ -130,15 +140,25 @@ class Window:
         with self._window.lock():
             scene.ngeom = 0
             paint(scene, frame.marks)
-        left, right = frame.words
-        if self._paused:
-            left, right = f"paused\n{left}", f"\n{right}"
-        corner, font = mujoco.mjtGridPos.mjGRID_TOPLEFT, mujoco.mjtFont.mjFONT_NORMAL
-        self._window.set_texts((font, corner, left, right))
+        self._write(frame.words)
         before = self._data.time
         self._window.sync()
         if self._data.time < before:  # its own reset button wipes the state
             self._restart = True
+
+    def _write(self, words: Caption) -> None:
+        """Not at every picture: this waits until the one before has been drawn."""
+        left, right = words
+        if self._paused:
+            left, right = f"paused\n{left}", f"\n{right}"
+        now, written = time.perf_counter(), (self._paused, left, right)
+        rested = now >= self._write_at or self._paused != self._written[0]
+        if not rested or written == self._written:
+            return
+        corner, font = mujoco.mjtGridPos.mjGRID_TOPLEFT, mujoco.mjtFont.mjFONT_NORMAL
+        self._window.set_texts((font, corner, left, right))
+        end = time.perf_counter()
+        self._written, self._write_at = written, end + max(WORDS, 2.0 * (end - now))
 
     def close(self) -> None:
         """Close the window, and wait until all that it holds is given back."""

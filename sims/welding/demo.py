@@ -16,7 +16,7 @@ from sims.report.replay import Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import run
-from sims.view import Display
+from sims.view import Display, nearer
 from sims.welding.figures import figures
 from sims.welding.metrics import metrics
 from sims.welding.parts import TIP, Part, parts
@@ -34,7 +34,8 @@ def _run(options: Options) -> Outcome:
     arm = racer.load()
     cell = welding.cell(arm, mismatch=options.mismatch, seed=options.seed)
     logs: dict[str, Log] = {}
-    with Display(view=options.view, video=options.video, camera=_close()) as display:
+    close = nearer(_camera(), 1.2, [0.78, 0.06, 0.50])
+    with Display(view=options.view, video=options.video, camera=close) as display:
         display.attach(cell)
         for part in parts(arm, display.jogger):
             logs[part.name] = display.play(
@@ -107,14 +108,6 @@ def _camera() -> mujoco.MjvCamera:
     camera = mujoco.MjvCamera()
     camera.azimuth, camera.elevation, camera.distance = 62.0, -22.0, 2.5
     camera.lookat[:] = [0.55, 0.08, 0.55]
-    return camera
-
-
-def _close() -> mujoco.MjvCamera:
-    """Near enough to see what the tasks do at the torch."""
-    camera = _camera()
-    camera.distance, camera.elevation = 1.5, -28.0
-    camera.lookat[:] = [0.72, 0.05, 0.52]
     return camera
 
 
