@@ -82,7 +82,8 @@ class Display:
         try:
             self._window = Window(world, jogger, self._camera)
         except NoWindow as error:
-            self.jogger = self._window = _headless(error)
+            self.jogger = self._window = None
+            _headless(error)
 
     def play(self, title: str, job: Callable[[], T]) -> T:
         """Do a job of one or several runs, and again when the operator wants it.

@@ -108,7 +108,7 @@ class Encoder:
             NoVideo: it cannot be written, such as on a full disk.
         """
         frame = self._av.VideoFrame.from_ndarray(picture, format="rgb24")
-        even = frame.reformat(format="yuv420p", dst_colorspace=BT709)
+        even = frame.reformat(format="yuv420p", dst_colorspace="ITU709")
         even.pts = self.count
         self.count += 1
         self._write(even)

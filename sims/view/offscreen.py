@@ -32,8 +32,10 @@ class Offscreen:
         NoDisplay: no OpenGL on this machine.
     """
 
+    _world: World
+
     def __init__(self, camera: mujoco.MjvCamera | None = None) -> None:
-        self._camera, self._gpu, self._world = camera, None, None
+        self._camera, self._gpu = camera, None
         try:
             self._context = _context()
             self._context.make_current()

@@ -37,13 +37,10 @@ def paint(scene: mujoco.MjvScene, marks: Sequence[Mark]) -> None:
 
 
 def _solid(geom: mujoco.MjvGeom, mark: Solid) -> None:
-    # the engine has half extents along x, y and z: a tube's radius counts twice
-    radius, half, _ = mark.size
-    size = np.array([radius, radius, half]) if mark.shape == "tube" else mark.size
     mujoco.mjv_initGeom(
         geom,
         SHAPES[mark.shape],
-        size,
+        mark.size,
         mark.p,
         np.ascontiguousarray(mark.R).ravel(),
         np.array(mark.colour, dtype=np.float32),
