@@ -55,7 +55,7 @@ class Display:
         video: str | None = None,
         camera: mujoco.MjvCamera | None = None,
     ) -> None:
-        self._camera, self._title = camera, ""
+        self._camera, self._title, self._playing = camera, "", False
         self._window: Window | None = None
         self._video = None if video is None else Video(video, copy.copy(camera))
         self.jogger = Jogger() if view and _can_open() else None
@@ -99,14 +99,30 @@ class Display:
         model, data = self._world.model, self._world.data
         before = copy.copy(data)
         while True:
+            self._playing = True
             try:
                 return job()
             except Restart:
                 mujoco.mj_copyData(data, model, before)
+            finally:
+                self._playing = False
 
     def __call__(self, cell: object, decisions: Sequence[Decision]) -> bool:
-        """See a tick; always go on."""
+        """See a tick; false where the operator wants a restart that none will `play`.
+
+        Raises:
+            WindowClosed: the operator has had enough.
+        """
         del cell
+        try:
+            self._see(decisions)
+        except Restart:
+            if self._playing:
+                raise
+            return False
+        return True
+
+    def _see(self, decisions: Sequence[Decision]) -> None:
         window, video = self._window, self._video
         live = window is not None and window.due()
         filmed = video is not None and video.due(self._world.model.opt.timestep)
@@ -116,7 +132,6 @@ class Display:
                 video.show(frame)
             if window is not None and live:
                 window.show(frame)
-        return True
 
     def __enter__(self) -> Display:
         return self
