@@ -8,39 +8,56 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
-from sims.view.marks import FORCE, Colour, Mark, arrow
+from sims.view.marks import FORCE, THIN, Colour, Mark, arrow
 from sims.wrist import WristSensor
 from wbc.arrays import Array
 
-__all__ = ["Contacts", "felt", "force_arrow"]
+__all__ = ["Contacts", "felt", "pulled", "pushed"]
 
 CONTACT: Final[Colour] = (0.90, 0.55, 0.0, 1.0)
 SCALE: Final = 0.005
 """Length of an arrow for each newton [m/N]."""
 LONGEST: Final = 0.35
 """[m]"""
+BROAD: Final = 2.0 * THIN
+"""Radius of an arrow of what is felt [m]; what is wanted is thin and shows inside."""
 LEAST: Final = 0.5
 """Smaller forces are not drawn [N]."""
 
 
-def force_arrow(p: Array, force: Array, colour: Colour) -> list[Mark]:
-    """A force (3,) [N] from p (3,) on, with its size; nothing for next to none."""
+def pushed(p: Array, force: Array, colour: Colour, radius: float) -> list[Mark]:
+    """A force (3,) [N] that ends at p (3,): into what is pushed, from outside.
+
+    Nothing for next to none.
+    """
+    way = _way(force)
+    return [] if way is None else [arrow(p - way, p, colour, _size(force), radius)]
+
+
+def pulled(p: Array, force: Array, colour: Colour, radius: float) -> list[Mark]:
+    """A force (3,) [N] that begins at p (3,), as one that is passed on there."""
+    way = _way(force)
+    return [] if way is None else [arrow(p, p + way, colour, _size(force), radius)]
+
+
+def _way(force: Array) -> Array | None:
     size = float(np.linalg.norm(force))
-    if not size >= LEAST:
-        return []
-    tip = p + min(SCALE, LONGEST / size) * force
-    return [arrow(p, tip, colour, f"{size:.0f} N")]
+    return min(SCALE, LONGEST / size) * force if size >= LEAST else None
+
+
+def _size(force: Array) -> str:
+    return f"{np.linalg.norm(force):.0f} N"
 
 
 def felt(
     data: mujoco.MjData, wrists: Sequence[WristSensor], wrenches: Mapping[str, Array]
 ) -> list[Mark]:
-    """What sensors feel: the robot's force on its surroundings, from the sensor on."""
+    """What sensors feel: the robot's force on its surroundings."""
     marks: list[Mark] = []
     for wrist in wrists:
         if wrist.name in wrenches:
             p = data.site(wrist.site).xpos.copy()
-            marks += force_arrow(p, wrenches[wrist.name][:3], FORCE)
+            marks += pulled(p, wrenches[wrist.name][:3], FORCE, BROAD)
     return marks
 
 
@@ -56,9 +73,10 @@ class Contacts:
         self._model, self._copy = model, mujoco.MjData(model)
 
     def marks(self, data: mujoco.MjData) -> list[Mark]:
-        """An arrow for each two bodies that touch: what the second one feels.
+        """An arrow for each two bodies that touch: what the resting one feels.
 
-        It is the sum over all their contacts, in the middle of these by their forces.
+        Where both move or both rest, it is the second one. It is the sum over all their
+        contacts, in the middle of these by their forces.
         """
         if not data.ncon:
             return []
@@ -72,7 +90,7 @@ class Contacts:
             mark
             for total in sums.values()
             if total[6] > LEAST
-            for mark in force_arrow(total[3:6] / total[6], total[:3], CONTACT)
+            for mark in pushed(total[3:6] / total[6], total[:3], CONTACT, BROAD)
         ]
 
     def _contact(self, i: int) -> tuple[tuple[int, int], Array]:
@@ -82,4 +100,7 @@ class Contacts:
         force = contact.frame.reshape(3, 3).T @ wrench[:3]
         size = np.linalg.norm(force)
         first, second = (int(self._model.geom_bodyid[g]) for g in contact.geom)
+        rests = self._model.body_weldid == 0
+        if rests[first] and not rests[second]:
+            force = -force
         return (first, second), np.array([*force, *(size * contact.pos), size])

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from sims.view.constraint import constraint_marks
-from sims.view.forces import force_arrow
+from sims.view.forces import pulled, pushed
 from sims.view.marks import ACTUAL, TARGET, THIN, Mark, arrow, ball, faint, line
 from sims.view.sketches import angle_of, chain, missed, pointing, triad
 from tasks import (
@@ -123,8 +123,9 @@ def _(task: HybridForceMotion, state: State) -> list[Mark]:
     F = state.frame(task.frame)
     p = F.p
     wanted = p + task.Omega_m[:3, :3] @ (task.target - p)
-    pushed = task.Omega_f[:3, :3] @ (task.axes @ task.force[:3])
-    marks = [ball(wanted, TARGET), *missed(p, wanted), *force_arrow(p, pushed, TARGET)]
+    force = task.Omega_f[:3, :3] @ (task.axes @ task.force[:3])
+    push = pushed(p, force, TARGET, THIN)
+    marks = [ball(wanted, TARGET), *missed(p, wanted), *push]
     if task.size == 6:
         marks += [*triad(p, task.orientation), *triad(p, F.R, 0.4)]
     return marks
@@ -135,8 +136,8 @@ def _(task: HybridForceMotion, state: State) -> list[Mark]:
 def _(task: Impedance | Admittance, state: State) -> list[Mark]:
     p = state.frame(task.frame).p
     spring = line(p, task.target, TARGET, THIN)
-    pushed = force_arrow(p, task.axes @ task.force, TARGET)
-    return [ball(task.target, TARGET), spring, ball(p, ACTUAL), *pushed]
+    pull = pulled(p, task.axes @ task.force, TARGET, THIN)
+    return [ball(task.target, TARGET), spring, ball(p, ACTUAL), *pull]
 
 
 def _aimed(task: Task, state: State, axis: Array, wanted: Array) -> list[Mark]:

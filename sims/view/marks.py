@@ -17,6 +17,7 @@ __all__ = [
     "MET_ANGLE",
     "MET_LENGTH",
     "TARGET",
+    "THIN",
     "Colour",
     "Connector",
     "Mark",

@@ -52,12 +52,12 @@ class Offscreen:
         self._free()
         roomy = copy.copy(world.model)  # the frame buffer's size is part of the model
         roomy.vis.global_.offwidth, roomy.vis.global_.offheight = WIDTH, HEIGHT
+        # without a graphics card shadows take twice as long as all the rest
+        roomy.vis.quality.shadowsize = 0
         self._gpu = mujoco.MjrContext(roomy, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self._gpu)
         self._world, self._options = world, mujoco.MjvOption()
         self._scene = mujoco.MjvScene(world.model, maxgeom=GEOMS)
-        # without a graphics card shadows take twice as long as all the rest
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
         if self._camera is None:
             self._camera = mujoco.MjvCamera()
             mujoco.mjv_defaultFreeCamera(world.model, self._camera)

@@ -63,8 +63,10 @@ def pointing(p: Array, actual: Array, wanted: Array, error: float) -> list[Mark]
     Their arrows go through the point, so that one end is out of the tool.
     """
     return [
-        arrow(p - SHAFT * wanted, p + SHAFT * wanted, TARGET),
-        arrow(p - SHAFT * actual, p + SHAFT * actual, shade(error, MET_ANGLE)),
+        arrow(p - SHAFT * wanted, p + SHAFT * wanted, TARGET, radius=THIN),
+        arrow(
+            p - SHAFT * actual, p + SHAFT * actual, shade(error, MET_ANGLE), radius=THIN
+        ),
     ]
 
 

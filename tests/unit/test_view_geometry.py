@@ -7,8 +7,18 @@ import numpy as np
 import pytest
 
 import tasks
+from robots import racer
+from sims import constraints
 from sims.view import Connector, Solid, geometry_of
-from sims.view.forces import LEAST, LONGEST, SCALE, Contacts, force_arrow
+from sims.view.forces import (
+    LEAST,
+    LONGEST,
+    SCALE,
+    Contacts,
+    felt,
+    pulled,
+    pushed,
+)
 from sims.view.marks import MET as GREEN
 from sims.view.marks import MET_LENGTH, MISSED, RANGE, TARGET, ball, line, shade
 from sims.view.painting import paint
@@ -176,13 +186,32 @@ def test_an_error_is_green_when_met_and_red_from_twenty_times_that_on():
 
 def test_a_force_is_an_arrow_of_its_length_up_to_the_longest():
     p = np.array([0.1, 0.2, 0.3])
-    (arrow,) = force_arrow(p, np.array([0.0, 20.0, 0.0]), TARGET)
-    np.testing.assert_allclose(arrow.b - p, [0.0, 20.0 * SCALE, 0.0])
+    (arrow,) = pushed(p, np.array([0.0, 20.0, 0.0]), TARGET, 0.004)
+    np.testing.assert_allclose(p - arrow.a, [0.0, 20.0 * SCALE, 0.0])
+    np.testing.assert_allclose(arrow.b, p)
     assert arrow.label == "20 N"
-    (longest,) = force_arrow(p, 1e4 * UP, TARGET)
-    assert longest.length == pytest.approx(LONGEST)
-    assert force_arrow(p, 0.9 * LEAST * UP, TARGET) == []
-    assert force_arrow(p, np.full(3, np.nan), TARGET) == []
+    (longest,) = pulled(p, 1e4 * UP, TARGET, 0.004)
+    np.testing.assert_allclose(longest.b - p, LONGEST * UP)
+    assert pushed(p, 0.9 * LEAST * UP, TARGET, 0.004) == []
+    assert pulled(p, np.full(3, np.nan), TARGET, 0.004) == []
+
+
+def test_a_task_on_force_shows_it_where_it_presses(state):
+    axes = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    p = state.frame(TIP).p
+    task = tasks.HybridForceMotion(TIP, p + 0.1, [0.0, 0.0, 20.0], axes=axes)
+    goal, error, _, push = geometry_of(task, state)
+    np.testing.assert_allclose(push.b - push.a, [20.0 * SCALE, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose([goal.p, error.b], [p + np.array([0.0, 0.1, 0.1])] * 2)
+
+
+def test_what_a_wrist_feels_is_drawn_at_its_sensor():
+    cell = constraints.cell(racer.load("probe"))
+    wrench = np.array([0.0, 0.0, -10.0, 1.0, 2.0, 3.0])
+    (arrow,) = felt(cell.data, cell.wrists, {"wrist": wrench})
+    np.testing.assert_allclose(arrow.a, cell.data.site("wrist_sensor").xpos)
+    np.testing.assert_allclose(arrow.b - arrow.a, -10.0 * SCALE * UP, atol=1e-12)
+    assert felt(cell.data, cell.wrists, {}) == []
 
 
 def test_what_lies_on_the_floor_presses_with_its_weight_and_looking_changes_nothing():
@@ -201,8 +230,8 @@ def test_what_lies_on_the_floor_presses_with_its_weight_and_looking_changes_noth
     after = [getattr(data, n) for n in ("qpos", "qvel", "qacc", "efc_force")]
     for was, now in zip(before, after, strict=True):
         np.testing.assert_array_equal(was, now)
-    np.testing.assert_allclose(arrow.b - arrow.a, 2 * 9.81 * SCALE * UP, atol=1e-4)
-    np.testing.assert_allclose(arrow.a, [0.3, 0.0, 0.0], atol=2e-3)
+    np.testing.assert_allclose(arrow.b - arrow.a, -2 * 9.81 * SCALE * UP, atol=1e-4)
+    np.testing.assert_allclose(arrow.b, [0.3, 0.0, 0.0], atol=2e-3)
 
 
 def test_nothing_is_drawn_where_nothing_touches():
