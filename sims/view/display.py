@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from types import TracebackType
 from typing import TypeVar, final
 
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 from sims.run import Decision
 from sims.view.jogger import Jogger
 from sims.view.overlay import Overlay, Own, World
-from sims.view.video import Video
+from sims.view.video import Video, termination_interrupts
 from sims.view.window import (
     KEYS,
     NoWindow,
@@ -33,8 +34,8 @@ T = TypeVar("T")
 class Display:
     """A watcher of runs (`sims.run`), to be used in a `with` statement.
 
-    A video that the operator ends early, by closing the window or by an interrupt, is
-    kept as far as it came; one of a run that fails is not.
+    A video that the operator ends early, by closing the window, by an interrupt or by
+    terminating the process, is kept as far as it came; one of a run that fails is not.
 
     Args:
         view: open a window; where none opens, it says so and goes on without.
@@ -56,6 +57,7 @@ class Display:
         camera: mujoco.MjvCamera | None = None,
     ) -> None:
         self._camera, self._title, self._playing = camera, "", False
+        self._ending = ExitStack()
         self._window: Window | None = None
         self._video = None if video is None else Video(video, copy.copy(camera))
         self.jogger = Jogger() if view and _can_open() else None
@@ -134,6 +136,8 @@ class Display:
                 window.show(frame)
 
     def __enter__(self) -> Display:
+        if self._video is not None:
+            self._ending.enter_context(termination_interrupts())
         return self
 
     def __exit__(
@@ -143,6 +147,7 @@ class Display:
         trace: TracebackType | None,
     ) -> None:
         """Close the window, and finish the video or drop it."""
+        self._ending.close()
         if self._window is not None:
             self._window.close()
         if self._video is None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import final
+from typing import NoReturn, final
 
 import mujoco
 
@@ -11,7 +15,7 @@ from sims.view.encoder import RATE, Encoder, NoVideo, check_path
 from sims.view.offscreen import HEIGHT, WIDTH, Offscreen
 from sims.view.overlay import Frame, World
 
-__all__ = ["NoVideo", "Video", "check_video"]
+__all__ = ["NoVideo", "Video", "check_video", "termination_interrupts"]
 
 EARLY = 1e-9
 """By which a picture may come before its time, for times that are sums [s]."""
@@ -93,3 +97,24 @@ class Video:
         """Leave nothing behind."""
         self._camera.close()
         self._encoder.abandon()
+
+
+@contextmanager
+def termination_interrupts() -> Iterator[None]:
+    """Let a SIGTERM end what is within as Ctrl-C does, so that a video is finished.
+
+    Signals reach the main thread alone; elsewhere nothing changes.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _interrupt(number: int, frame: object) -> NoReturn:
+    del number, frame
+    raise KeyboardInterrupt

@@ -5,7 +5,9 @@ from __future__ import annotations
 import itertools
 import os
 import resource
+import signal
 import sys
+from collections.abc import Callable
 
 import av
 import mujoco
@@ -108,31 +110,45 @@ class Box:
         self.data, self.wrists = mujoco.MjData(self.model), ()
 
 
-def film(path, error: BaseException | None, pictures: int = 40) -> None:
-    """A film of some ticks that ends by an error, if any."""
+def film(path, ending: Callable[[], None], pictures: int = 40) -> None:
+    """A film of some ticks, and what comes after them."""
     with Display(video=str(path)) as display:
         display.attach(Box())
         for _ in range(pictures):
             display(None, [])
-        if error is not None:
-            raise error
+        ending()
+
+
+def fail(error: BaseException) -> Callable[[], None]:
+    def ending() -> None:
+        raise error
+
+    return ending
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), WindowClosed()], ids=repr)
 def test_a_run_that_the_user_ends_leaves_a_film_of_what_was(error, tmp_path):
     with pytest.raises(type(error)):
-        film(tmp_path / "film.mp4", error)
+        film(tmp_path / "film.mp4", fail(error))
     assert len(frames(tmp_path / "film.mp4")) == 3  # of 40 ticks of 2 ms
+
+
+def test_a_run_that_is_terminated_leaves_a_film_of_what_was(tmp_path):
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt):
+        film(tmp_path / "film.mp4", lambda: os.kill(os.getpid(), signal.SIGTERM))
+    assert len(frames(tmp_path / "film.mp4")) == 3
+    assert signal.getsignal(signal.SIGTERM) is before
 
 
 def test_a_run_that_fails_leaves_nothing(tmp_path):
     with pytest.raises(RuntimeError, match="broken"):
-        film(tmp_path / "film.mp4", RuntimeError("broken"))
+        film(tmp_path / "film.mp4", fail(RuntimeError("broken")))
     assert os.listdir(tmp_path) == []
 
 
 def test_a_run_without_a_tick_leaves_nothing(tmp_path):
-    film(tmp_path / "film.mp4", None, pictures=0)
+    film(tmp_path / "film.mp4", lambda: None, pictures=0)
     assert os.listdir(tmp_path) == []
 
 
