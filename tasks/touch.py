@@ -36,6 +36,9 @@ class TouchTask(Task):
         InputError: the axes are no rotation; at the first tick, the sensor is missing.
     """
 
+    _target: Array
+    _force: Array
+
     def __init__(
         self,
         name: str,
@@ -49,7 +52,7 @@ class TouchTask(Task):
         super().__init__(name, unit, (frame, sensor_frame))
         self.frame, self.sensor, self.sensor_frame = frame, sensor, sensor_frame
         self.size = rows
-        self._R, self._heard = np.eye(3), False
+        self._R, self._R_d, self._heard = np.eye(3), np.eye(3), False
         if axes is not None:
             self.set_axes(axes)
 
@@ -65,6 +68,21 @@ class TouchTask(Task):
     def axes(self) -> Array:
         """R_WD, (3, 3)."""
         return self._R.copy()
+
+    @property
+    def target(self) -> Array:
+        """Where F's origin should be in the directions that move, (3,) [m]."""
+        return self._target[0, :3].copy()
+
+    @property
+    def orientation(self) -> Array:
+        """R_d, (3, 3); the identity where three rows do not turn."""
+        return self._R_d.copy()
+
+    @property
+    def force(self) -> Array:
+        """What F should exert, in D, one number a row [N, Nm]."""
+        return self._force.copy()
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """Linear directions, then angular ones."""

@@ -11,18 +11,24 @@ import mujoco
 import numpy as np
 
 from sims.cutting.cell import CuttingCell
+from sims.cutting.job import Job
 from sims.cutting.loop import Run
+from sims.cutting.meat import Meat
 from sims.cutting.metrics import REST
 from sims.report.axes import PALETTE
 from sims.report.replay import Replay, Trace
 from sims.report.snapshot import Image, NoDisplay, render
+from sims.view.marks import TARGET, Mark
+from sims.view.sketches import chain
 
-__all__ = ["camera", "describe", "picture", "replay", "snapshots"]
+__all__ = ["camera", "describe", "guide_line", "picture", "replay", "snapshots"]
 
 WIDTH, HEIGHT = 480, 320
 REPLAY_RATE: Final = 15.0
 """Frames a second: every one stores all vertices of the meat."""
 THIN: Final = 20
+POINTS: Final = 40
+"""Of a guide line."""
 
 
 def camera(distance: float = 1.75) -> mujoco.MjvCamera:
@@ -112,6 +118,16 @@ def replay(run: Run) -> str:
         camera=camera(),
         rate=REPLAY_RATE,
     ).html()
+
+
+def guide_line(job: Job, meat: Meat) -> list[Mark]:
+    """The line of the present passage; nothing before the first."""
+    if not job.passages.lines:
+        return []
+    ends = meat.links.ends[0][:, 0]
+    x = np.linspace(ends.min(), ends.max(), POINTS)
+    z = np.full(x.size, job.passages.depth)
+    return chain(np.column_stack([x, job.passages.lines[-1](x), z]), TARGET)
 
 
 def describe(cell: CuttingCell) -> str:
