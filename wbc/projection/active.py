@@ -6,7 +6,7 @@ from wbc.arrays import Array, IntArray
 from wbc.compiled import compiled, inner
 from wbc.lexicographic.vectors import add_scaled, dot, length
 from wbc.projection.recursion import norm, project, target
-from wbc.projection.work import Work, unpack
+from wbc.projection.work import Work, set_problem, work_at
 
 __all__ = ["saturate"]
 
@@ -18,13 +18,7 @@ MULTIPLIER = 1e-9
 
 @compiled
 def saturate(
-    A: Array,
-    lower: Array,
-    upper: Array,
-    rest: Array,
-    floats: Array,
-    integers: IntArray,
-    release: bool,
+    A: Array, lower: Array, upper: Array, rest: Array, address: int, release: bool
 ) -> int:
     """Hold the worst violated bound, let go of one that pulls, until neither is.
 
@@ -33,32 +27,33 @@ def saturate(
         lower: (m,) bounds.
         upper: (m,) bounds.
         rest: (n,) what y would be if all motion were to die out.
-        floats: of a `Memory`.
-        integers: likewise.
+        address: of a `Memory`.
         release: whether bounds that are held may be let go.
 
     Returns:
         number of projections; negative where that many did not settle it.
     """
-    w = unpack(floats, integers)
+    w = work_at(address)
+    set_problem(w, A, lower, upper, rest)
     m, n = A.shape
     for r in range(m):
         if lower[r] == upper[r]:
             w.side[r] = 0
     most: int = 2 * n + 4 if release else m + 1
     for count in range(1, most + 1):
-        project(A, lower, upper, rest, w)
-        if _hold_worst(A, lower, upper, w):
+        project(w)
+        if _hold_worst(w):
             continue
-        if release and _release_one(A, lower, upper, w):
+        if release and _release_one(w):
             continue
         return count
     return -most
 
 
 @inner
-def _hold_worst(A: Array, lower: Array, upper: Array, w: Work) -> bool:
+def _hold_worst(w: Work) -> bool:
     """Hold the bound that is violated most, relative to its row's norm."""
+    A, lower, upper = w.A, w.lower, w.upper
     worst, row, side = 0.0, -1, 0
     for r in range(w.side.size):
         if w.side[r] != 0 or lower[r] == upper[r]:
@@ -77,7 +72,7 @@ def _hold_worst(A: Array, lower: Array, upper: Array, w: Work) -> bool:
 
 
 @inner
-def _release_one(A: Array, lower: Array, upper: Array, w: Work) -> bool:
+def _release_one(w: Work) -> bool:
     """Let go of a held bound that the blocks below would leave by themselves.
 
     The sign of the first block that pulls at a row decides (lexicographic); the wish
@@ -91,31 +86,31 @@ def _release_one(A: Array, lower: Array, upper: Array, w: Work) -> bool:
         return False
     for c in range(w.blocks[0]):
         rows = w.order[w.block[c] : w.block[c + 1]]
-        scale = norm(A, rows)
-        floor = MULTIPLIER * (scale * reach + _pull(A, lower, upper, w, rows))
+        scale = norm(w, rows)
+        floor = MULTIPLIER * (scale * reach + _pull(w, rows))
         row = _would_leave(w, rows, floor)
         if row < 0 and length(w.pull) > scale * floor:
-            row = _wrong_sign(A, w, c)
+            row = _wrong_sign(w, c)
         if row >= 0:
             w.side[row] = 0
             return True
     for j in range(w.y.size):
         w.pull[j] = -w.y[j]
-    row = _wrong_sign(A, w, w.blocks[0])
+    row = _wrong_sign(w, w.blocks[0])
     if row >= 0:
         w.side[row] = 0
     return row >= 0
 
 
 @inner
-def _pull(A: Array, lower: Array, upper: Array, w: Work, rows: IntArray) -> float:
+def _pull(w: Work, rows: IntArray) -> float:
     """What the rows of a block miss, and its force; the most that one misses."""
     most = 0.0
     w.pull[:] = 0.0
     for q in range(rows.size):
         r = rows[q]
-        missing = target(lower, upper, w, r) - dot(A[r], w.y, 0, w.y.size)
-        add_scaled(missing, A[r], w.pull, 0, w.y.size)
+        missing = target(w, r) - dot(w.A[r], w.y, 0, w.y.size)
+        add_scaled(missing, w.A[r], w.pull, 0, w.y.size)
         w.missing[q] = missing
         most = max(most, abs(missing))
     return most
@@ -134,7 +129,7 @@ def _would_leave(w: Work, rows: IntArray, floor: float) -> int:
 
 
 @inner
-def _wrong_sign(A: Array, w: Work, count: int) -> int:
+def _wrong_sign(w: Work, count: int) -> int:
     """A held row of the first `count` blocks that pulls, where `pull` pushes at them.
 
     Multipliers from the lowest block up: each takes what falls into its directions.
@@ -148,8 +143,8 @@ def _wrong_sign(A: Array, w: Work, count: int) -> int:
             share = dot(w.Z[i], w.pull, 0, n) / (w.sigma[i] * w.sigma[i])
             add_scaled(share, w.B[i], push, 0, rows.size)
         for q in range(rows.size):
-            add_scaled(-push[q], A[rows[q]], w.pull, 0, n)
-            push[q] *= length(A[rows[q]])
+            add_scaled(-push[q], w.A[rows[q]], w.pull, 0, n)
+            push[q] *= length(w.A[rows[q]])
             largest = max(largest, abs(push[q]))
     for q in range(w.block[count]):
         r = w.order[q]

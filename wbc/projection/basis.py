@@ -8,6 +8,8 @@ times the singular values, and directions without an image span the null space.
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from wbc.arrays import Array, IntArray
@@ -22,6 +24,9 @@ NOTHING = 1e-16
 """Share of the block's norm below which an image is none."""
 SWEEPS = 40
 """Over all pairs; about six do, because the last ones converge quadratically."""
+
+ONE: Final = np.uintp(1)
+TWO: Final = np.uintp(2)
 
 
 @inner
@@ -122,11 +127,16 @@ def _rotate_all(
 
 @inner
 def _rotate(a: Array, b: Array, c: float, s: float, n: int) -> None:
-    """A, b <- c a - s b, s a + c b over the first n numbers."""
-    for k in range(np.uintp(n)):
+    """A, b <- c a - s b, s a + c b over the first n numbers, two at a time."""
+    k, end = np.uintp(0), np.uintp(n)
+    while k + TWO <= end:
+        x0, x1, y0, y1 = a[k], a[k + ONE], b[k], b[k + ONE]
+        a[k], a[k + ONE] = c * x0 - s * y0, c * x1 - s * y1
+        b[k], b[k + ONE] = s * x0 + c * y0, s * x1 + c * y1
+        k += TWO
+    if k < end:
         x, y = a[k], b[k]
-        a[k] = c * x - s * y
-        b[k] = s * x + c * y
+        a[k], b[k] = c * x - s * y, s * x + c * y
 
 
 @inner

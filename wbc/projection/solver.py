@@ -42,15 +42,15 @@ class Projection:
         alone: bool = False,
     ) -> None:
         self._memory = Memory(sizes, n)
-        work = self._memory.views
-        self.y, self.side, self.ranks = work.y, work.side, work.ranks
-        self.directions = work.Z
-        work.alone[0] = alone
-        work.damping[:] = (
+        memory = self._memory
+        self.y, self.side, self.ranks = memory["y"], memory["side"], memory["ranks"]
+        self.directions = memory["Z"]
+        memory["alone"][0] = alone
+        memory["damping"][:] = (
             (1.0, 0.0) if damping is None else (damping.threshold, damping.factor)
         )
         announce(saturate, "the projection")
-        m = work.side.size  # compile now, by solving nothing, not within a loop
+        m = self.side.size  # compile now, by solving nothing, not within a loop
         self.solve(np.zeros((m, n)), np.zeros(m), np.zeros(m), np.zeros(n))
 
     def solve(self, A: Array, lower: Array, upper: Array, rest: Array) -> bool:
@@ -75,5 +75,4 @@ class Projection:
     def _run(
         self, A: Array, lower: Array, upper: Array, rest: Array, release: bool
     ) -> int:
-        memory = self._memory
-        return saturate(A, lower, upper, rest, memory.floats, memory.integers, release)
+        return saturate(A, lower, upper, rest, self._memory.address, release)

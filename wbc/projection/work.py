@@ -1,28 +1,33 @@
-"""The projection's arrays, allocated once."""
+"""The projection's arrays, allocated once and found through one table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, final
+from functools import lru_cache
+from typing import Annotated, Any, Final, NamedTuple, final
 
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import inner, python
+from wbc.compiled import inner
+from wbc.pointers import address_of
+from wbc.structure import ENTRIES, Structure
 
-__all__ = ["Memory", "Work", "unpack"]
-
-SIZES = 3
-"""The integers start with p, m, n."""
+__all__ = ["Memory", "Work", "set_problem", "work_at"]
 
 
 class Work(NamedTuple):
-    """Everything that a solve writes.
+    """A problem, the law, and everything that a solve writes.
 
     A block is the held bounds of a level, or its equalities. Direction i is row i of Z;
     block c owns the directions first[c] to first[c + 1].
 
     Attributes:
+        A: (m, n) the levels' rows, stacked; not ours, no more than the next three.
+        lower: (m,) their lower bounds.
+        upper: (m,) and upper ones.
+        rest: (n,) what y would be if all motion were to die out.
+        table: where these four lie, as `Structure` has it.
         alone: (1,) whether each level is solved without regard to those above (UF).
         start: (p + 1,) first row of every level, and the number of rows.
         side: (m,) bounds that are held: 1 at upper, -1 at lower, 0 for other rows.
@@ -46,80 +51,77 @@ class Work(NamedTuple):
         spare: (2, n) numbers on the way.
     """
 
-    alone: IntArray
-    start: IntArray
-    side: IntArray
-    undecided: IntArray
-    order: IntArray
-    blocks: IntArray
-    block: IntArray
-    first: IntArray
-    ranks: IntArray
-    damping: Array
-    y: Array
-    Z: Array
-    B: Array
-    sigma: Array
-    V: Array
-    C: Array
-    gain: Array
-    missing: Array
-    push: Array
-    pull: Array
-    way: Array
-    spare: Array
+    A: Annotated[Array, "m, n"]
+    lower: Annotated[Array, "m"]
+    upper: Annotated[Array, "m"]
+    rest: Annotated[Array, "n"]
+    table: Annotated[IntArray, "table"]
+    alone: Annotated[IntArray, "1"]
+    damping: Annotated[Array, "2"]
+    start: Annotated[IntArray, "p + 1"]
+    side: Annotated[IntArray, "m"]
+    undecided: Annotated[IntArray, "m"]
+    order: Annotated[IntArray, "m"]
+    blocks: Annotated[IntArray, "1"]
+    block: Annotated[IntArray, "2 p + 1"]
+    first: Annotated[IntArray, "2 p + 1"]
+    ranks: Annotated[IntArray, "p"]
+    y: Annotated[Array, "n"]
+    Z: Annotated[Array, "n, n"]
+    B: Annotated[Array, "n, m"]
+    sigma: Annotated[Array, "n"]
+    V: Annotated[Array, "n, n"]
+    C: Annotated[Array, "n, m"]
+    gain: Annotated[Array, "n"]
+    missing: Annotated[Array, "m"]
+    push: Annotated[Array, "m"]
+    pull: Annotated[Array, "n"]
+    way: Annotated[Array, "n"]
+    spare: Annotated[Array, "2, n"]
+
+
+_WORK: Final = Structure(Work)
+work_at: Final[Any] = _WORK.at
+
+
+@inner
+def set_problem(w: Work, A: Array, lower: Array, upper: Array, rest: Array) -> None:
+    """Let the structure's problem be these arrays."""
+    w.table[0] = A.ctypes.data
+    w.table[ENTRIES] = lower.ctypes.data
+    w.table[2 * ENTRIES] = upper.ctypes.data
+    w.table[3 * ENTRIES] = rest.ctypes.data
 
 
 @final
 class Memory:
-    """The same arrays end to end in two, because a call is as fast as it is short.
+    """All arrays, in one block.
 
     Args:
         sizes: number of rows of every level.
         n: number of unknowns.
 
     Attributes:
-        floats, integers: everything, in the order of `Work`.
-        views: the arrays by name.
+        address: of the table of the arrays, for `work_at`.
     """
 
-    __slots__ = ("floats", "integers", "views")
+    __slots__ = ("_block", "_layout", "address")
 
     def __init__(self, sizes: Sequence[int], n: int) -> None:
-        p, m = len(sizes), int(sum(sizes))
-        self.floats = np.zeros(2 + n * (2 * n + 2 * m + 7) + 2 * m)
-        self.integers = np.zeros(SIZES + 6 * p + 5 + 3 * m, np.int_)
-        self.integers[:3] = p, m, n
-        self.views = python(unpack)(self.floats, self.integers)
-        self.views.start[1:] = np.cumsum(np.array(sizes, np.int_))
+        self._layout, size = _layout(len(sizes), int(sum(sizes)), n)
+        self._block = np.zeros(size)
+        table = self["table"]
+        table[:] = self._layout.ravel()
+        table[::ENTRIES] += address_of(self._block)
+        self.address = address_of(table)
+        self["start"][1:] = np.cumsum(np.array(sizes, np.int_))
+
+    def __getitem__(self, name: str) -> Any:
+        """An array of `Work`, as a view."""
+        return _WORK.view(name, self._block, self._layout)
 
 
-@inner
-def unpack(floats: Array, integers: IntArray) -> Work:
-    """The arrays of `Work` in a `Memory`, as views."""
-    p, m, n = integers[0], integers[1], integers[2]
-    alone, i = integers[SIZES : SIZES + 1], SIZES + 1
-    start, i = integers[i : i + p + 1], i + p + 1
-    side, i = integers[i : i + m], i + m
-    undecided, i = integers[i : i + m], i + m
-    order, i = integers[i : i + m], i + m
-    blocks, i = integers[i : i + 1], i + 1
-    block, i = integers[i : i + 2 * p + 1], i + 2 * p + 1
-    first, i = integers[i : i + 2 * p + 1], i + 2 * p + 1
-    ranks = integers[i : i + p]
-    damping, y, f = floats[:2], floats[2 : 2 + n], 2 + n
-    Z, f = floats[f : f + n * n].reshape((n, n)), f + n * n
-    B, f = floats[f : f + n * m].reshape((n, m)), f + n * m
-    sigma, f = floats[f : f + n], f + n
-    V, f = floats[f : f + n * n].reshape((n, n)), f + n * n
-    C, f = floats[f : f + n * m].reshape((n, m)), f + n * m
-    gain, f = floats[f : f + n], f + n
-    missing, f = floats[f : f + m], f + m
-    push, f = floats[f : f + m], f + m
-    pull, f = floats[f : f + n], f + n
-    way, f = floats[f : f + n], f + n
-    spare = floats[f : f + 2 * n].reshape((2, n))
-    return Work(
-        alone, start, side, undecided, order, blocks, block, first, ranks,
-        damping, y, Z, B, sigma, V, C, gain, missing, push, pull, way, spare,
-    )  # fmt: skip
+@lru_cache(maxsize=64)
+def _layout(p: int, m: int, n: int) -> tuple[IntArray, int]:
+    words = {"p": p, "p + 1": p + 1, "2 p + 1": 2 * p + 1, "m": m, "n": n}
+    return _WORK.layout(words | {"1": 1, "2": 2, "table": ENTRIES * len(Work._fields)})
