@@ -104,7 +104,7 @@ def _price(w: Work, k: int) -> float:
             least = size
     if least == np.inf:
         return 0.0
-    return float(max(THRIFT * least**2, CHEAPEST * w.scale[k] ** 2))
+    return float(max(THRIFT * least * least, CHEAPEST * w.scale[k] * w.scale[k]))
 
 
 @inner
