@@ -13,7 +13,7 @@ from wbc import slots
 from wbc.arrays import Array, IntArray
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
-from wbc.pointers import floats_at, integers_at
+from wbc.pointers import floats_at, integers_at, matrix
 from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
 from wbc.tick import conclude
@@ -101,24 +101,24 @@ def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) ->
     """
     n, m = table[slots.JOINTS], table[slots.ROWS]
     f, tasks, spare = table[slots.FRAMES], table[slots.TASKS], SCRATCH + 6 * n
-    pointers = integers_at(table[slots.POINTERS], f * 6).reshape((f, 6))
-    constants = floats_at(table[slots.CONSTANTS], f * (15 + n)).reshape((f, 15 + n))
-    blocks = floats_at(table[slots.BLOCKS], f * (24 + 6 * n)).reshape((f, 24 + 6 * n))
-    scratch = floats_at(table[slots.SCRATCH], 4 * spare).reshape((4, spare))
+    pointers = matrix(integers_at(table[slots.POINTERS], f * 6), f, 6)
+    constants = matrix(floats_at(table[slots.CONSTANTS], f * (15 + n)), f, 15 + n)
+    blocks = matrix(floats_at(table[slots.BLOCKS], f * (24 + 6 * n)), f, 24 + 6 * n)
+    scratch = matrix(floats_at(table[slots.SCRATCH], 4 * spare), 4, spare)
     jacobian = table[slots.JACOBIAN]
     for i in range(f):
         update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch[1], n)
     _write_rows(
-        integers_at(table[slots.PROGRAM], tasks * 10).reshape((tasks, 10)),
-        floats_at(table[slots.GAINS], 2 * m).reshape((2, m)),
+        matrix(integers_at(table[slots.PROGRAM], tasks * 10), tasks, 10),
+        matrix(floats_at(table[slots.GAINS], 2 * m), 2, m),
         blocks,
         scratch,
         q,
         v,
         t,
         dt,
-        floats_at(table[slots.RAW], m * n).reshape((m, n)),
-        floats_at(table[slots.BANDS], 5 * m).reshape((5, m)),
+        matrix(floats_at(table[slots.RAW], m * n), m, n),
+        matrix(floats_at(table[slots.BANDS], 5 * m), 5, m),
     )
     return conclude(table, out)
 

@@ -17,7 +17,7 @@ from numba.np import arrayobj
 from wbc.arrays import Array, IntArray
 from wbc.errors import InputError
 
-__all__ = ["address_of", "floats_at", "integers_at"]
+__all__ = ["address_of", "floats_at", "integers_at", "matrix"]
 
 WORD = 8
 
@@ -53,6 +53,28 @@ def _view_of(kind: Any) -> Any:
     return intrinsic(type_it)
 
 
+def _in_rows(typing_context: Any, vector: Any, rows: Any, columns: Any) -> Any:
+    del typing_context, rows, columns
+    kind = _types.Array(vector.dtype, 2, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        of, rows, columns = arguments
+        numbers = context.make_array(signature.args[0])(context, builder, of)
+        array = context.make_array(kind)(context, builder)
+        word = context.get_constant(_types.intp, WORD)
+        _arrays.populate_array(
+            array,
+            data=numbers.data,
+            shape=_tools.pack_array(builder, [rows, columns]),
+            strides=_tools.pack_array(builder, [builder.mul(columns, word), word]),
+            itemsize=word,
+            meminfo=None,
+        )
+        return array._getvalue()
+
+    return kind(vector, _types.intp, _types.intp), generate
+
+
 floats_at: Any = _view_of(_types.float64)
 """(address, count) -> the float64 numbers (count,) there; nothing is copied.
 
@@ -60,6 +82,11 @@ The array owns nothing, and a compiled function must not return it.
 """
 integers_at: Any = _view_of(_types.intp)
 """The same for integers."""
+matrix: Any = intrinsic(_in_rows)
+"""(vector, rows, columns) -> the same numbers in rows; nothing is copied.
+
+The vector must be contiguous and as long. Nothing is checked, unlike by `reshape`.
+"""
 
 
 def address_of(view: Array | IntArray) -> int:

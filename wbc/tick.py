@@ -8,7 +8,7 @@ from wbc.assembly import assemble, back_substitute, inverse_dynamics
 from wbc.compiled import compiled, inner
 from wbc.lexicographic.solver import lexicographic
 from wbc.lexicographic.work import work_at
-from wbc.pointers import floats_at
+from wbc.pointers import floats_at, matrix
 
 __all__ = ["conclude", "without_kernels"]
 
@@ -26,19 +26,19 @@ def conclude(table: IntArray, out: Array) -> int:
         how it ended, as `wbc.slots` lists.
     """
     n, m = table[slots.JOINTS], table[slots.ROWS]
-    M = floats_at(table[slots.INERTIA], n * n).reshape((n, n))
+    M = matrix(floats_at(table[slots.INERTIA], n * n), n, n)
     h = floats_at(table[slots.BIAS], n)
-    L_inv = floats_at(table[slots.L_INV], n * n).reshape((n, n))
-    Ay = floats_at(table[slots.Y_ROWS], m * n).reshape((m, n))
-    bounds = floats_at(table[slots.BOUNDS], 2 * m).reshape((2, m))
+    L_inv = matrix(floats_at(table[slots.L_INV], n * n), n, n)
+    Ay = matrix(floats_at(table[slots.Y_ROWS], m * n), m, n)
+    bounds = matrix(floats_at(table[slots.BOUNDS], 2 * m), 2, m)
     outcome = assemble(
-        floats_at(table[slots.RAW], m * n).reshape((m, n)),
-        floats_at(table[slots.BANDS], 5 * m).reshape((5, m)),
+        matrix(floats_at(table[slots.RAW], m * n), m, n),
+        matrix(floats_at(table[slots.BANDS], 5 * m), 5, m),
         floats_at(table[slots.WEIGHTS], m),
         floats_at(table[slots.TORQUE], m),
         M,
         h,
-        floats_at(table[slots.VDOT_ROWS], m * n).reshape((m, n)),
+        matrix(floats_at(table[slots.VDOT_ROWS], m * n), m, n),
         Ay,
         bounds,
         L_inv,

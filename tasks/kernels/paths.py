@@ -10,6 +10,7 @@ from tasks.kernels.rotations import in_world, turn_to
 from wbc.arrays import Array
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, cross_into
+from wbc.pointers import matrix
 from wbc.rows import Rows
 
 __all__ = [
@@ -144,7 +145,7 @@ def _nearest_sample(table: Array, p: Array) -> float:
 def follow(table: Array, F: FrameState, scratch: Array) -> Along:
     """From c'(s) . (p - c(s)) = 0, differentiated twice."""
     n = F.J.shape[1]
-    point = scratch[:36].reshape((4, 9))
+    point = matrix(scratch[:36], 4, 9)
     J = scratch[SCRATCH : SCRATCH + n]
     s = locate(table, F.p, point)
     write_point(table, s, point)
