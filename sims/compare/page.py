@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from sims.compare.figures import marks
+from sims.compare.picture import write_picture
 from sims.compare.study import LOCKING, Study
 from sims.compare.words import explain
 from sims.metrics import Metric, to_json
@@ -105,7 +106,8 @@ def figures(study: Study) -> list[tuple[str, str]]:
 
 
 def write(study: Study, folder: Path) -> None:
-    """Write metrics.json and report.html into a folder."""
+    """Write metrics.json, picture.png and report.html into a folder."""
+    write_picture(study, folder / "picture.png")
     judged = bars(study)
     (folder / "metrics.json").write_text(to_json(judged), encoding="utf-8")
     write_report(

@@ -43,7 +43,7 @@ def compare_random(
     _conclude(judged)
     if folder is not None:
         page.write(found, folder)
-        print(f"wrote metrics.json, report.html to {folder}")
+        print(f"wrote metrics.json, report.html, picture.png to {folder}")
     return 0 if all(metric.holds for metric in judged) else 1
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 from numpy.testing import assert_allclose
 
 from sims.compare import page
@@ -226,6 +227,9 @@ def test_tables_have_a_row_a_resolver(found):
 
 def test_a_report_is_written(found, tmp_path):
     page.write(found, tmp_path)
+    picture = imread(tmp_path / "picture.png")
+    assert picture.shape[0] > 300
+    assert picture.std() > 0.05  # [1], of a white sheet 0
     text = (tmp_path / "report.html").read_text()
     assert text.count("<svg") == 3
     assert "limits: 7 axes" in text
