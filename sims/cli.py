@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
@@ -20,12 +21,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns:
         0 if everything held, 1 if a bound did not, 2 on bad usage, 130 if the user
-        ended it.
+        ended it, 141 if nobody read on what it printed.
     """
     parser = _parser()
     asked = parser.parse_args(arguments)
     try:
         code: int = asked.action(asked)
+        sys.stdout.flush()
+    except BrokenPipeError:  # as in `wbc list | head -1`; what is left goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except WbcError as error:
         sys.stderr.write(f"wbc: {error}\n")
         return 2
