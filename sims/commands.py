@@ -20,6 +20,7 @@ from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
 from sims.report.datatable import Table, as_text
 from sims.report.page import write_report
+from sims.report.runs import CAPTION, level_figures
 from sims.report.snapshot import NoDisplay, write_png
 from sims.resolvers import make_resolver
 from wbc import InputError, UnknownName
@@ -138,6 +139,8 @@ def _write(folder: Path, title: str, options: Options, outcome: Outcome) -> None
         summary="Metrics from the simulator's truth, each against its bound.",
         metrics=outcome.metrics,
         figures=outcome.figures(),
+        runs=level_figures(outcome.logs),
+        how_to_read=CAPTION,
         replay_html=outcome.replay(),
         facts=facts,
     )

@@ -19,7 +19,7 @@ from sims.contact.results import Attempt, Crank, metrics
 from sims.contact.scene import CRANK_JOINT, TIP
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
-from sims.report.replay import Replay, Trace
+from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import render
 from sims.resolvers import make_resolver
 from sims.run import run
@@ -88,6 +88,7 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
         replay=lambda: _replay(cell.model, attempts, turned),
         picture=lambda: render(cell.model, cell.data, _camera(), 1280, 800),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
+        logs=logs,
     )
 
 
@@ -161,18 +162,31 @@ def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank])
     """Some attempts and a crank in a row, each with the way of the peg's end."""
     shown = _named(attempts[:SHOWN], [])
     shown |= _named([], cranks[:1])
-    times, qpos, traces, begin = [], [], [], 0.0
+    times, traces, begin = [], [], 0.0
     for name, log in shown.items():
         t = begin + log.t - log.t[0]
         times.append(t)
-        qpos.append(log.qpos)
         colour = "#0072B2" if name.startswith("crank") else "#D55E00"
         traces.append(Trace(name, log.p[TIP][::20], colour, 0.0015, t[::20]))
         begin = t[-1] + (
             PAUSE if name.startswith("crank") or name.endswith("stay") else 0.01
         )
-    stamps, states = np.concatenate(times), np.concatenate(qpos)
-    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+    states, tips, wrenches = (
+        np.concatenate(parts)
+        for parts in zip(
+            *((g.qpos, g.p[TIP], g.wrenches["wrist"]) for g in shown.values()),
+            strict=True,
+        )
+    )
+    push = Arrow("peg on block and crank", tips, wrenches[:, :3], ends=True)
+    return Replay(
+        model,
+        np.concatenate(times),
+        states,
+        traces=traces,
+        arrows=[push],
+        camera=_camera(),
+    ).html()
 
 
 def _camera() -> mujoco.MjvCamera:

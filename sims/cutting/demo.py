@@ -72,6 +72,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: replay(run),
         picture=lambda: picture(run),
         facts=_facts(run, trial),
+        logs={log.robot.name: log for log in run.logs},
     )
 
 

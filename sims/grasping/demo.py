@@ -17,6 +17,7 @@ from sims.grasping.job import Job
 from sims.grasping.metrics import OBJECT, Result, metrics
 from sims.grasping.plan import TCP
 from sims.grasping.scene import GOAL
+from sims.grasping.touch import Touch
 from sims.log import shared_metrics
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
@@ -56,6 +57,7 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
         replay=lambda: replay(results),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
+        logs={result.job.cylinder.name: result.log for result in results},
     )
 
 
@@ -64,7 +66,10 @@ def _grasp(arm: Robot, cell: ArmCell, case: Case, options: Options) -> Result:
     job = Job(arm, cell, case.cylinder, GOAL, case.start)
     window = open_viewer(cell, camera()) if options.view else None
 
+    touch = Touch(cell.model)
+
     def watch(cell: Cell, solution: Solution) -> bool:
+        touch.see(cell.data)
         shown = window is None or window(cell, solution)
         return shown and job.watch(cell, solution)
 
@@ -82,7 +87,7 @@ def _grasp(arm: Robot, cell: ArmCell, case: Case, options: Options) -> Result:
         window.close()
     if job.failed and options.duration is None:
         sys.stderr.write(f"wbc: {job.report}\n")
-    return Result(job, log)
+    return Result(job, log, touch)
 
 
 def _picture(cell: ArmCell) -> Image:

@@ -8,8 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from sims.metrics import Metric, format_value, to_json, verdict
+from sims.report.cards import Drawing, cards, folded
 from sims.report.datatable import Table, as_html
-from wbc.errors import InputError
 
 __all__ = ["write_report"]
 
@@ -41,7 +41,9 @@ def write_report(
     title: str,
     summary: str,
     metrics: Sequence[Metric],
-    figures: Sequence[tuple[str, str]] = (),
+    figures: Sequence[Drawing] = (),
+    runs: Sequence[Drawing] = (),
+    how_to_read: str = "",
     replay_html: str | None = None,
     facts: Mapping[str, str] | None = None,
     data: Sequence[Table] = (),
@@ -54,6 +56,8 @@ def write_report(
         summary: plain text below the heading; line breaks are kept.
         metrics: the run's numbers, each with its bound.
         figures: (caption, `<svg>` element) pairs, in order.
+        runs: the same of single runs, alike; all but the first few are folded.
+        how_to_read: what to know about them.
         replay_html: a complete document, shown in a frame of its own.
         facts: what the run was made with, such as resolver, versions and seed.
         data: tables of numbers that are not judged, each under its heading.
@@ -69,7 +73,10 @@ def write_report(
         summary=html.escape(summary),
         style=files("sims.report").joinpath("page.css").read_text(encoding="utf-8"),
         verdict=_verdict(metrics),
-        body=body + "".join(map(as_html, data)) + _figures(figures),
+        body=body
+        + "".join(map(as_html, data))
+        + cards("Figures", figures)
+        + folded("Runs, level by level", how_to_read, runs),
     )
     Path(path).write_text(page, encoding="utf-8")
 
@@ -125,20 +132,3 @@ def _replay(document: str | None) -> str:
         '<p class="printed">The replay moves: open this page in a browser to see it.'
         "</p></section>\n"
     )
-
-
-def _figures(figures: Sequence[tuple[str, str]]) -> str:
-    if not figures:
-        return ""
-    cards = "\n".join(_figure(caption, svg) for caption, svg in figures)
-    return f'<h2>Figures</h2>\n<div class="figures">\n{cards}\n</div>'
-
-
-def _figure(caption: str, svg: str) -> str:
-    element = svg.strip()
-    if not (element.startswith("<svg") and element.endswith("</svg>")):
-        raise InputError(f"the figure '{caption}' is not one <svg> element.")
-    if "<script" in element.lower():
-        raise InputError(f"the figure '{caption}' holds a script.")
-    text = html.escape(caption)
-    return f'<figure class="card">{element}<figcaption>{text}</figcaption></figure>'
