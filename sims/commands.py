@@ -139,7 +139,7 @@ def _write(folder: Path, title: str, options: Options, outcome: Outcome) -> None
         summary="Metrics from the simulator's truth, each against its bound.",
         metrics=outcome.metrics,
         figures=outcome.figures(),
-        runs=level_figures(outcome.logs),
+        runs=level_figures(outcome.courses),
         how_to_read=CAPTION,
         replay_html=outcome.replay(),
         facts=facts,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
-from sims.log import Log
+from sims.course import Course
 from sims.metrics import Metric
 from wbc.arrays import Array
 
@@ -51,7 +51,7 @@ class Outcome:
         replay: makes the 3-D replay, one HTML document.
         picture: makes a picture (height, width, 3) of the end of the run.
         facts: what it was made with.
-        logs: of its runs by name; the report draws their levels.
+        courses: of its runs by name; the report draws their levels.
     """
 
     metrics: list[Metric]
@@ -60,7 +60,7 @@ class Outcome:
     replay: Callable[[], str]
     picture: Callable[[], Any]
     facts: dict[str, str] = field(default_factory=dict)
-    logs: Mapping[str, Log] = field(default_factory=dict)
+    courses: Mapping[str, Course] = field(default_factory=dict)
 
 
 @final

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wbc import Solution
 from wbc.arrays import Array
@@ -20,7 +19,7 @@ EVERY: Final = 10
 class LevelLog:
     """Samples of what tasks went without; sample j belongs to time t[j].
 
-    It takes 4 bytes a task and sample, however the hierarchy changes.
+    It takes 8 bytes a task and sample, however the hierarchy changes.
 
     Args:
         ticks: of the run, at most.
@@ -35,7 +34,7 @@ class LevelLog:
     def __init__(self, ticks: int) -> None:
         self._size, self._count = -(-ticks // EVERY), 0
         self.t: Array = np.full(self._size, np.nan)
-        self.shortfall: dict[tuple[int, str], NDArray[np.float32]] = {}
+        self.shortfall: dict[tuple[int, str], Array] = {}
 
     def record(self, tick: int, t: float, solution: Solution) -> None:
         """Keep a tick that is due, before the controller's next one."""
@@ -48,7 +47,7 @@ class LevelLog:
         for level, task, share in solution.shortfalls():
             lane = (level, task)
             if lane not in self.shortfall:
-                self.shortfall[lane] = np.full(self._size, np.nan, dtype=np.float32)
+                self.shortfall[lane] = np.full(self._size, np.nan)
             self.shortfall[lane][sample] = share
 
     def trim(self) -> None:
@@ -61,5 +60,5 @@ class LevelLog:
         """Everything by name, for a file."""
         named: dict[str, Array] = {"shortfall_t": self.t}
         for (level, task), shares in self.shortfall.items():
-            named[f"shortfall/level {level}: {task}"] = shares.astype(np.float64)
+            named[f"shortfall/level {level}: {task}"] = shares
         return named

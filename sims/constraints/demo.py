@@ -15,6 +15,7 @@ from sims.constraints import hybrid, joint_limit, plane, singular
 from sims.constraints.case import Case, Trial
 from sims.constraints.soundness import soundness
 from sims.constraints.surface import TIP
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
 from sims.metrics import Metric
@@ -67,7 +68,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: _replay(cell.model, trials),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": _simulated(logs)},
-        logs=logs,
+        courses={name: Course.of(log) for name, log in logs.items()},
     )
 
 

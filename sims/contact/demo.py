@@ -17,6 +17,7 @@ from sims.contact.figures import figures
 from sims.contact.peg import ABOVE, DOWN, Insertion, Search, Stay, believed_holes
 from sims.contact.results import Attempt, Crank, metrics
 from sims.contact.scene import CRANK_JOINT, TIP
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
 from sims.report.replay import Arrow, Replay, Trace
@@ -88,7 +89,7 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
         replay=lambda: _replay(cell.model, attempts, turned),
         picture=lambda: render(cell.model, cell.data, _camera(), 1280, 800),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
-        logs=logs,
+        courses=_courses(attempts, turned),
     )
 
 
@@ -156,6 +157,14 @@ def _named(attempts: list[Attempt], cranks: list[Crank]) -> dict[str, Log]:
         phases = zip(("search", "insertion", "stay"), attempt.logs, strict=False)
         named |= {f"peg {i + 1} {phase}": log for phase, log in phases}
     return named
+
+
+def _courses(attempts: list[Attempt], cranks: list[Crank]) -> dict[str, Course]:
+    """Of every attempt, its phases in a row, and of every crank."""
+    courses = {f"peg {i + 1}": Course.of(*a.logs) for i, a in enumerate(attempts)}
+    return courses | {
+        f"crank {i + 1}": Course.of(crank.log) for i, crank in enumerate(cranks)
+    }
 
 
 def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank]) -> str:

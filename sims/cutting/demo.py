@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from typing import get_args
 
+from sims.course import Course
 from sims.cutting.correction import Experiment
 from sims.cutting.figures import figures
 from sims.cutting.loop import Run, run_job
@@ -72,7 +73,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: replay(run),
         picture=lambda: picture(run),
         facts=_facts(run, trial),
-        logs={log.robot.name: log for log in run.logs},
+        courses={log.robot.name: Course.of(log) for log in run.logs},
     )
 
 

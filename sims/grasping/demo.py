@@ -9,6 +9,7 @@ import numpy as np
 from robots import racer
 from sims import grasping
 from sims.cell import ArmCell, Cell
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.grasping.cases import COUNT, Case, seeded_cases
 from sims.grasping.figures import figures
@@ -57,7 +58,7 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
         replay=lambda: replay(results),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
-        logs={result.job.cylinder.name: result.log for result in results},
+        courses={r.job.cylinder.name: Course.of(r.log) for r in results},
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
-from sims.log import Log
+from sims.course import Course
 from sims.report.thinning import columns
 from wbc.arrays import Array
 
@@ -38,38 +38,33 @@ class Lane:
     """One task at one level.
 
     Attributes:
-        level: from 1 at the top.
-        task: its name.
         t, share: (S,) sample times [s] and the share of its wish that was missed.
         rows: limit -> (T,) whether it was active.
     """
 
-    level: int
-    task: str
     t: Array
     share: Array
     rows: dict[str, Array] = field(default_factory=dict)
 
 
-def lanes_of(log: Log) -> dict[tuple[int, str], Lane]:
+def lanes_of(course: Course) -> dict[tuple[int, str], Lane]:
     """Lanes of a run, from the top level down."""
     lanes = {
-        (level, task): Lane(level, task, log.levels.t, share)
-        for (level, task), share in sorted(
-            log.levels.shortfall.items(), key=lambda pair: pair[0][0]
-        )
+        key: Lane(course.sampled, share)
+        for key, share in sorted(course.shortfall.items(), key=lambda pair: pair[0][0])
     }
-    for name, active in log.active.items():
+    for name, active in course.active.items():
         level, task, row = name.removeprefix("level ").split(": ", 2)
-        lanes[int(level), task].rows[row] = active
+        if (int(level), task) in lanes:  # else it came and went between two samples
+            lanes[int(level), task].rows[row] = active
     return lanes
 
 
-def aligned(runs: Iterable[Log]) -> dict[tuple[int, str], tuple[str, ...]]:
+def aligned(runs: Iterable[Course]) -> dict[tuple[int, str], tuple[str, ...]]:
     """Lanes that any of the runs has, each with the limits active in any, in order."""
     found: dict[tuple[int, str], dict[str, None]] = {}
-    for log in runs:
-        for key, lane in lanes_of(log).items():
+    for course in runs:
+        for key, lane in lanes_of(course).items():
             found.setdefault(key, {}).update(dict.fromkeys(lane.rows))
     ordered = sorted(found.items(), key=lambda pair: pair[0][0])
     return {key: tuple(sorted(rows)) for key, rows in ordered}
@@ -81,11 +76,14 @@ def lanes_height(plan: Mapping[tuple[int, str], tuple[str, ...]]) -> float:
 
 
 def draw_lanes(
-    axes: Axes, log: Log, plan: Mapping[tuple[int, str], tuple[str, ...]], named: bool
+    axes: Axes,
+    course: Course,
+    plan: Mapping[tuple[int, str], tuple[str, ...]],
+    named: bool,
 ) -> None:
     """Draw a run's lanes in the places of the plan, and their names where wanted."""
-    lanes, y, ticks = lanes_of(log), 0.0, []
-    extent = (float(log.t[0]), float(log.t[-1]))
+    lanes, y, ticks = lanes_of(course), 0.0, []
+    extent = (float(course.t[0]), float(course.t[-1]))
     for (level, task), rows in plan.items():
         lane = lanes.get((level, task))
         ticks.append((y + 0.5 * _TASK, f"{level}  {_short(task)}"))
@@ -95,7 +93,7 @@ def draw_lanes(
         for row in rows:
             ticks.append((y + 0.5 * _ROW, _short(row)))
             if lane is not None and row in lane.rows:
-                strip = columns(log.t, lane.rows[row][None], _COLUMNS)[0] > 0.0
+                strip = columns(course.t, lane.rows[row][None], _COLUMNS)[0] > 0.0
                 _draw_bars(axes, strip, extent, (y, y + 0.8 * _ROW), _ACTIVE)
             y += _ROW
         y += _GAP

@@ -8,6 +8,7 @@ import numpy as np
 from robots import racer
 from sims import welding
 from sims.cell import ArmCell
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
 from sims.report.replay import Arrow, Replay, Trace
@@ -55,7 +56,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: _replay(cell.model, shown),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": _simulated(logs)},
-        logs=logs,
+        courses={name: Course.of(log) for name, log in logs.items()},
     )
 
 
