@@ -13,6 +13,7 @@ from sims import constraints
 from sims.cell import ArmCell, Cell
 from sims.constraints import hybrid, joint_limit, plane, singular
 from sims.constraints.case import Case, Trial
+from sims.constraints.compared import compared
 from sims.constraints.soundness import soundness
 from sims.constraints.surface import TIP
 from sims.course import Course
@@ -167,4 +168,5 @@ DEMO = Demo(
     "constraints",
     "planes, joint limits and hybrid force: the paper's constraints, one by one",
     _run,
+    compared=compared,
 )

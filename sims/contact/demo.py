@@ -12,6 +12,7 @@ from robots import racer
 from sims import contact
 from sims.cell import ArmCell, Cell
 from sims.constraints.case import READY
+from sims.contact.compared import compared
 from sims.contact.crank import SUNK, Belief, Turning, believed_cranks, handle
 from sims.contact.figures import figures
 from sims.contact.peg import ABOVE, DOWN, Insertion, Search, Stay, believed_holes
@@ -210,4 +211,5 @@ DEMO = Demo(
     "contact",
     "a peg finds its hole by force, and a crank is turned that is hardly known",
     run_jobs,
+    compared=compared,
 )

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import get_args
 
 from sims.course import Course
+from sims.cutting.compared import compared
 from sims.cutting.correction import Experiment
 from sims.cutting.figures import figures
 from sims.cutting.loop import Run, run_job
@@ -114,4 +115,5 @@ DEMO = Demo(
     "two 7-axis arms cut deformable meat apart along a guide line",
     _run,
     EXPERIMENTS,
+    compared=compared,
 )

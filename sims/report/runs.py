@@ -19,14 +19,15 @@ from sims.report.svg import styled, to_svg
 from sims.report.thinning import thin_series
 from wbc.arrays import Array
 
-__all__ = ["CAPTION", "drawable", "level_figures", "run_figure"]
+__all__ = ["CAPTION", "compared_figures", "drawable", "level_figures", "run_figure"]
 
 CAPTION: Final = (
     "One lane a task, the most important on top; the number is its level. Shaded where "
     "the task gave way: the share of the acceleration or torque it wanted that it did "
     "not get, beyond round-off, sampled every ten ticks. A limit that was ever active "
     "has a line of its own below its task, blue where it was, at any tick. The last "
-    "level takes what is left over, so it misses most."
+    "level takes what is left over, so it misses most. Runs in which a limit was "
+    "active come first."
 )
 _POINTS: Final = 3600
 _LEAST: Final = 1e-7
@@ -34,11 +35,35 @@ _LEAST: Final = 1e-7
 
 
 def level_figures(courses: Mapping[str, Course]) -> list[tuple[str, str]]:
-    """(caption, svg) of every run that is long enough to draw."""
+    """(caption, svg) of every run, those first in which a limit was active."""
+    shown = {name: {name: c} for name, c in courses.items() if drawable(c)}
+    return _drawn(shown, "Levels, errors and loads of")
+
+
+def compared_figures(
+    courses: Mapping[str, Mapping[str, Course]],
+) -> list[tuple[str, str]]:
+    """The same of every run that was done in two ways or more, side by side.
+
+    Args:
+        courses: way -> run -> its course.
+    """
+    shown: dict[str, dict[str, Course]] = {}
+    for way, runs in courses.items():
+        for name, course in runs.items():
+            if drawable(course):
+                shown.setdefault(name, {})[way] = course
+    several = {name: ways for name, ways in shown.items() if len(ways) > 1}
+    return _drawn(several, "Side by side, with the same axes: levels, errors, loads of")
+
+
+def _drawn(
+    shown: Mapping[str, Mapping[str, Course]], caption: str
+) -> list[tuple[str, str]]:
+    limited = {k: any(c.active for c in ways.values()) for k, ways in shown.items()}
     return [
-        (f"Levels, errors and loads of '{name}'.", run_figure(name, {name: course}))
-        for name, course in courses.items()
-        if drawable(course)
+        (f"{caption} '{name}'.", run_figure(name, shown[name]))
+        for name in sorted(shown, key=lambda name: not limited[name])
     ]
 
 
