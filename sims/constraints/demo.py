@@ -123,14 +123,14 @@ def _simulated(logs: dict[str, Log]) -> str:
 
 def _replay(model: mujoco.MjModel, trials: dict[str, Trial]) -> str:
     """All runs in a row, each with the way of the tip, and what the probe presses."""
-    times, traces, begin = [], [], 0.0
+    times, traces, chapters, begin = [], [], [], 0.0
     for i, (name, trial) in enumerate(trials.items()):
         log = trial.log
         t = begin + log.t - log.t[0]
         times.append(t)
-        way = log.p[TIP][::20]
-        colour = COLOURS[i % len(COLOURS)]
-        traces.append(Trace(f"tip: {name}", way, colour, 0.004, t[::20]))
+        chapters.append((name, begin))
+        way, colour = log.p[TIP][::20], COLOURS[i % len(COLOURS)]
+        traces.append(Trace(f"tip: {name}", way, colour, 0.004, t[::20], listed=False))
         begin = t[-1] + PAUSE
     logs = [trial.log for trial in trials.values()]
     tips = np.concatenate([log.p[TIP] for log in logs])
@@ -141,6 +141,7 @@ def _replay(model: mujoco.MjModel, trials: dict[str, Trial]) -> str:
         np.concatenate([log.qpos for log in logs]),
         traces=traces,
         arrows=[Arrow("probe on plate", tips, forces, ends=True)],
+        chapters=chapters,
         camera=_camera(),
     ).html()
 

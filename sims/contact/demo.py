@@ -172,15 +172,15 @@ def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank])
     """Some attempts and a crank in a row, each with the way of the peg's end."""
     shown = _named(attempts[:SHOWN], [])
     shown |= _named([], cranks[:1])
-    times, traces, begin = [], [], 0.0
+    times, traces, chapters, begin = [], [], [], 0.0
     for name, log in shown.items():
         t = begin + log.t - log.t[0]
         times.append(t)
-        colour = "#0072B2" if name.startswith("crank") else "#D55E00"
-        traces.append(Trace(name, log.p[TIP][::20], colour, 0.0015, t[::20]))
-        begin = t[-1] + (
-            PAUSE if name.startswith("crank") or name.endswith("stay") else 0.01
-        )
+        chapters.append((name, begin))
+        turns = name.startswith("crank")
+        way, colour = log.p[TIP][::20], "#0072B2" if turns else "#D55E00"
+        traces.append(Trace(name, way, colour, 0.0015, t[::20], listed=False))
+        begin = t[-1] + (PAUSE if turns or name.endswith("stay") else 0.01)
     states, tips, wrenches = (
         np.concatenate(parts)
         for parts in zip(
@@ -195,6 +195,7 @@ def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank])
         states,
         traces=traces,
         arrows=[push],
+        chapters=chapters,
         camera=_camera(),
     ).html()
 

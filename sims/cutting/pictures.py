@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 from typing import Final
 
 import mujoco
@@ -17,7 +15,7 @@ from sims.cutting.metrics import REST
 from sims.cutting.record import EVERY
 from sims.report.axes import PALETTE
 from sims.report.replay import Arrow, Replay, Trace
-from sims.report.snapshot import Image, NoDisplay, render
+from sims.report.snapshot import Image, NoDisplay, data_url, render
 from wbc.arrays import Array
 
 __all__ = ["camera", "describe", "picture", "replay", "snapshots"]
@@ -61,18 +59,13 @@ def snapshots(run: Run) -> str | None:
     moments = [("before the cut", 0.0)]
     moments += [(f"after passage {k}", t + REST) for k, t in enumerate(ended, 1)]
     try:
-        shots = [(name, _jpeg(_at(run, t, view, WIDTH, HEIGHT))) for name, t in moments]
+        shots = [
+            (name, data_url(_at(run, t, view, WIDTH, HEIGHT))) for name, t in moments
+        ]
     except NoDisplay:
         return None
-    return _contact_sheet(shots)
-
-
-def _jpeg(image: Image) -> str:
-    import PIL.Image
-
-    buffer = io.BytesIO()
-    PIL.Image.fromarray(image).save(buffer, format="JPEG", quality=85)
-    return base64.b64encode(buffer.getvalue()).decode("ascii")
+    names = [name for name, _ in moments]
+    return _contact_sheet(list(zip(names, map(data_url, images), strict=True)))
 
 
 def _contact_sheet(shots: list[tuple[str, str]], columns: int = 2) -> str:
@@ -82,7 +75,7 @@ def _contact_sheet(shots: list[tuple[str, str]], columns: int = 2) -> str:
         x, y = (i % columns) * WIDTH, (i // columns) * HEIGHT
         parts.append(
             f'<image x="{x}" y="{y}" width="{WIDTH}" height="{HEIGHT}" '
-            f'href="data:image/jpeg;base64,{data}"/><text x="{x + 12}" y="{y + 26}" '
+            f'href="{data}"/><text x="{x + 12}" y="{y + 26}" '
             f'font-family="sans-serif" font-size="20">{html.escape(name)}</text>'
         )
     size = f"0 0 {columns * WIDTH} {rows * HEIGHT}"

@@ -36,10 +36,12 @@ SPACING: Final = 0.14
 def replay(results: list[Result]) -> str:
     """The replay as an HTML document."""
     model = _model(results)
-    times, states, traces, pushes, begin = [], [], [], [], 0.0
+    times, states, traces, pushes, chapters = [], [], [], [], []
+    begin = 0.0
     for index, result in enumerate(results):
         log = result.log
         t = begin + log.t[::STRIDE] - log.t[0]
+        chapters.append((result.job.cylinder.name, begin))
         times += [t, [t[-1] + PAUSE - 0.02]]
         qpos = _states(model, results, index)
         states += [qpos, qpos[-1:]]
@@ -66,6 +68,7 @@ def replay(results: list[Result]) -> str:
         np.concatenate(states),
         traces=shown,
         arrows=arrows,
+        chapters=chapters,
         camera=camera(),
     ).html()
 

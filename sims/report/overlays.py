@@ -36,6 +36,7 @@ class Trace:
         colour: any colour that matplotlib knows.
         width: diameter of the line [m].
         times: (K,) [s] in the recording's time, if the line grows as it is drawn.
+        listed: whether the legend has it; one of many alike is enough.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Trace:
     colour: str = PALETTE[1]
     width: float = 0.004
     times: ArrayLike | None = None
+    listed: bool = True
 
 
 @final
@@ -102,7 +104,12 @@ def trace_of(
     Raises:
         InputError: no points, or shapes that do not fit.
     """
-    line = {"name": trace.name, "colour": to_hex(trace.colour), "width": trace.width}
+    line = {
+        "name": trace.name,
+        "colour": to_hex(trace.colour),
+        "width": trace.width,
+        "listed": trace.listed,
+    }
     shape, what = np.shape(trace.points), f"points of trace '{trace.name}'"
     if 0 in shape:
         raise InputError(f"trace '{trace.name}' has no points.")

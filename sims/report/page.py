@@ -10,6 +10,7 @@ from pathlib import Path
 from sims.metrics import Metric, format_value, to_json, verdict
 from sims.report.cards import Drawing, cards, folded
 from sims.report.datatable import Table, as_html
+from sims.report.snapshot import Image, data_url
 
 __all__ = ["write_report"]
 
@@ -45,6 +46,7 @@ def write_report(
     runs: Sequence[Drawing] = (),
     how_to_read: str = "",
     replay_html: str | None = None,
+    picture: Image | None = None,
     facts: Mapping[str, str] | None = None,
     data: Sequence[Table] = (),
 ) -> None:
@@ -59,6 +61,7 @@ def write_report(
         runs: the same of single runs, alike; all but the first few are folded.
         how_to_read: what to know about them.
         replay_html: a complete document, shown in a frame of its own.
+        picture: (height, width, 3), which stands for the replay on paper.
         facts: what the run was made with, such as resolver, versions and seed.
         data: tables of numbers that are not judged, each under its heading.
 
@@ -67,7 +70,7 @@ def write_report(
     """
     to_json(metrics)  # refuses names that occur twice
     tables = _metrics(metrics) + _facts(facts or {})
-    body = _replay(replay_html) + f'<div class="tables">{tables}</div>\n'
+    body = _replay(replay_html, picture) + f'<div class="tables">{tables}</div>\n'
     page = _PAGE.format(
         title=html.escape(title),
         summary=html.escape(summary),
@@ -123,12 +126,15 @@ def _facts(facts: Mapping[str, str]) -> str:
     )
 
 
-def _replay(document: str | None) -> str:
+def _replay(document: str | None, picture: Image | None) -> str:
     if document is None:
         return ""
+    still = ""
+    if picture is not None:
+        still = f'<img class="printed" alt="The run" src="{data_url(picture)}">'
     return (
         '<section class="card"><iframe title="Replay in three dimensions" '
-        f'srcdoc="{html.escape(document)}"></iframe>'
+        f'srcdoc="{html.escape(document)}"></iframe>{still}'
         '<p class="printed">The replay moves: open this page in a browser to see it.'
         "</p></section>\n"
     )

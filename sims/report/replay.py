@@ -52,6 +52,7 @@ class Replay:
         traces: lines to draw.
         markers: balls to draw.
         arrows: forces to draw, and other vectors.
+        chapters: (name, begin [s]) of parts, in order; the page shows where it is.
         camera: where to look from; by default everything is in view.
         mocap: (T, nmocap, 7) position [m] and quaternion w x y z of mocap bodies.
         rate: frames that the page stores for each second of the recording [1/s].
@@ -70,6 +71,7 @@ class Replay:
         traces: Sequence[Trace] = (),
         markers: Sequence[Marker] = (),
         arrows: Sequence[Arrow] = (),
+        chapters: Sequence[tuple[str, float]] = (),
         camera: mujoco.MjvCamera | None = None,
         mocap: ArrayLike | None = None,
         rate: float = 30.0,
@@ -93,6 +95,7 @@ class Replay:
         self._scene |= {
             "traces": [trace_of(t, count, kept, start, store) for t in traces],
             "markers": [marker_of(m, count, kept, store) for m in markers],
+            "chapters": [{"name": n, "begin": begin - start} for n, begin in chapters],
             "arrows": arrows_of(arrows, count, kept, _radius(self._motion), store),
         }
         self._data = self._store.text()
@@ -138,6 +141,7 @@ class Replay:
         entries = [
             f'<li><i style="background:{one["colour"]}"></i>{html.escape(one["name"])}'
             for one in [*scene["traces"], *scene["markers"]]
+            if one.get("listed", True)
         ]
         entries += [
             f'<li><b style="color:{one["colour"]}">&#x2794;</b>'

@@ -82,12 +82,14 @@ def _simulated(logs: dict[str, Log]) -> str:
 
 def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
     """All jobs in a row, with what the tip has welded growing as it goes."""
-    times, traces, begin = [], [], 0.0
+    times, traces, chapters, begin = [], [], [], 0.0
     for name, log in logs.items():
         t = begin + log.t - log.t[0]
         times.append(t)
+        chapters.append((name, begin))
         bead = log.p[TIP][::20]
-        traces.append(Trace(f"tip: {name}", bead, "#D55E00", 0.006, t[::20]))
+        way = "way of the tip" if not begin else f"tip: {name}"
+        traces.append(Trace(way, bead, "#D55E00", 0.006, t[::20], listed=not begin))
         begin = t[-1] + PAUSE
     lines = [np.array([SEAM.at(s).c[0] for s in (0.0, SEAM.length)])]
     lines.append(np.array([CURVE.at(s).c[0] for s in np.linspace(0, CURVE.length, 60)]))
@@ -103,6 +105,7 @@ def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
         np.concatenate([log.qpos for log in logs.values()]),
         traces=traces,
         arrows=[Arrow("speed of the tip", *drawn, "mm/s")],
+        chapters=chapters,
         camera=_camera(),
     ).html()
 

@@ -3,7 +3,7 @@ function controls() {
   const animator = viewer.animator;
   const signs = { Pause: "M1 0h3.6v12H1zM7.4 0H11v12H7.4z", Play: "M1 0l10.5 6L1 12z" };
   const slider = find("time"), clock = find("clock"), speed = find("speed");
-  const button = find("play");
+  const button = find("play"), chapter = find("chapter");
   slider.max = duration;
   slider.addEventListener("input", () => {
     animator.pause();
@@ -19,6 +19,9 @@ function controls() {
     requestAnimationFrame(show);
     const text = `${animator.time.toFixed(2)} / ${duration.toFixed(2)} s`;
     if (clock.value !== text) clock.value = text;
+    const begun = scene.chapters.filter((part) => part.begin <= animator.time + 1e-3);
+    const name = begun.length ? begun[begun.length - 1].name : "";
+    if (chapter.textContent !== name) chapter.textContent = name;
     if (document.activeElement !== slider || animator.playing)
       slider.value = animator.time;
     const next = animator.playing ? "Pause" : "Play";
