@@ -59,16 +59,14 @@ def snapshots(run: Run) -> str | None:
     moments = [("before the cut", 0.0)]
     moments += [(f"after passage {k}", t + REST) for k, t in enumerate(ended, 1)]
     try:
-        shots = [
-            (name, data_url(_at(run, t, view, WIDTH, HEIGHT))) for name, t in moments
-        ]
+        images = [_at(run, t, view, WIDTH, HEIGHT) for _, t in moments]
     except NoDisplay:
         return None
     names = [name for name, _ in moments]
     return _contact_sheet(list(zip(names, map(data_url, images), strict=True)))
 
 
-def _contact_sheet(shots: list[tuple[str, str]], columns: int = 2) -> str:
+def _contact_sheet(shots: list[tuple[str, str]], columns: int = 3) -> str:
     rows = -(-len(shots) // columns)
     parts = []
     for i, (name, data) in enumerate(shots):

@@ -106,7 +106,7 @@ def shade(axes: Axes, spans: Sequence[Span]) -> None:
         tint = ("#56B4E9", "#E69F00")[index % 2]
         axes.axvspan(start, stop, color=tint, alpha=0.13, linewidth=0.0)
         middle = 0.5 * (max(start, begin) + min(stop, end))
-        narrow = (stop - start) / (end - begin) < 0.016 * len(name)
+        narrow = (stop - start) / (end - begin) < 0.012 * len(name)
         where = _INSIDE if narrow else _ABOVE
         axes.annotate(name, (middle, 1.0), xycoords=("data", "axes fraction"), **where)
     axes.set_xlim(begin, end)

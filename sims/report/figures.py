@@ -114,7 +114,8 @@ def lines3d(
     axes.set_aspect("equal")
     spans = {axis: np.ptp(getattr(axes, f"get_{axis}lim")()) for axis in "xyz"}
     for axis, span in spans.items():
-        bins = max(2, round(6.0 * span / max(spans.values())))
-        axes.locator_params(axis=axis, nbins=bins)
+        share = span / max(spans.values())
+        axes.locator_params(axis=axis, nbins=max(2, round(6.0 * share)))
+        getattr(axes, f"{axis}axis").labelpad = 2.0 + 8.0 * share
     legend(axes)
     return to_svg(figure, title)

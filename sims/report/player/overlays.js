@@ -33,7 +33,9 @@ function addTrace(trace) {
     tube.setDrawRange(0, rings * sides * 6);
   });
 }
-function bend(mesh, trace) { // a line that moves: its tube anew for every picture
+// A line that moves, seen through what it moves in: its tube anew for every picture.
+function bend(mesh, trace) {
+  Object.assign(mesh.material, { depthTest: false, transparent: true, opacity: 0.8 });
   const stored = array(trace.moving);
   const size = stored.length / times.length;
   const points = new Float32Array(size);
