@@ -133,7 +133,11 @@ def _opening(record: Record) -> tuple[str, str]:
         "links cut [%]": 100.0 * record.cut,
     }
     svg = time_series(
-        "Opening of the valley", record.coarse_t, lines, "mm, %", spans=_spans(record)
+        "Opening of the valley",
+        record.coarse_t,
+        lines,
+        "opening [mm], links [%]",
+        spans=_spans(record),
     )
     return "Mean distance of the two muscles along y, and links cut.", svg
 

@@ -116,6 +116,6 @@ def lines3d(
     for axis, span in spans.items():
         share = span / max(spans.values())
         axes.locator_params(axis=axis, nbins=max(2, round(6.0 * share)))
-        getattr(axes, f"{axis}axis").labelpad = 2.0 + 8.0 * share
+        getattr(axes, f"{axis}axis").labelpad = 2.0 + 16.0 * share
     legend(axes)
     return to_svg(figure, title)

@@ -52,14 +52,16 @@ def side_by_side(title: str, panels: Sequence[Panel]) -> str:
     if not ways or any(list(panel.ways) != ways for panel in panels):
         raise InputError(f"the panels of '{title}' must be of the same ways, and some.")
     names = [_names(panel) for panel in panels]
-    spaces = [head(ways), *(0.2 + room(each) for each in names[1:])]
+    spaces = [0.2 + room(each) * (len(each) > 1) for each in names]
+    spaces[0] = head(ways)
     figure, grid = grid_of(title, [(HIGH, space) for space in spaces], ways)
     begin, end = _span(panels)
     for row, panel, labels in zip(grid, panels, names, strict=True):
         for axes, curves in zip(row, panel.ways.values(), strict=True):
             _draw(axes, curves, labels)
             axes.set_xlim(begin, end if end > begin else None)
-        name_curves(row[0], labels)
+        if len(labels) > 1:
+            name_curves(row[0], labels)
         row[0].set_ylabel(panel.label)
     return to_svg(figure, title)
 

@@ -29,7 +29,7 @@ CAPTION: Final = (
     "level takes what is left over, so it misses most. Runs in which a limit was "
     "active come first."
 )
-_POINTS: Final = 3600
+_POINTS: Final = 2400  # vertices of a panel, over all columns
 _LEAST: Final = 1e-7
 """Errors below this are drawn as this: round-off of no interest."""
 

@@ -1,5 +1,9 @@
+"""Reports in a headless browser: nothing complains, and the replay moves."""
+
 from __future__ import annotations
 
+import html
+import json
 import re
 import shutil
 import subprocess
@@ -10,7 +14,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from sims.cli import main
 from sims.metrics import Metric
+from sims.registry import cell_names
 from sims.report.figures import time_series
 from sims.report.page import write_report
 from sims.report.replay import Replay, Trace
@@ -48,6 +54,38 @@ FLAGS = [
     f"--window-size={WIDTH},{HEIGHT}",
 ]
 HARMLESS = ("GL Driver Message",)  # remarks of the software renderer on its speed
+
+SHORT = {"cutting": 3.0, "welding": 1.5, "contact": 1.0}
+"""Longest time of each job [s], enough for something to move; 0.5 s elsewhere."""
+MOMENTS = (0.02, 0.5, 1.0)
+SMALL = (320, 180)
+LOOK = """
+<script>
+window.addEventListener("load", () => {
+  const inside = document.querySelector("iframe").contentWindow;
+  const canvas = inside.document.querySelector("#pane canvas");
+  const slider = inside.document.getElementById("time");
+  const small = document.createElement("canvas");
+  [small.width, small.height] = SMALL;
+  const pen = small.getContext("2d", { willReadFrequently: true });
+  const moments = MOMENTS, pictures = [];
+  function look() {
+    slider.value = moments[pictures.length] * slider.max;
+    slider.dispatchEvent(new Event("input"));
+    inside.requestAnimationFrame(() => { // after the viewer's own, in the same frame
+      pen.drawImage(canvas, 0, 0, small.width, small.height);
+      const { data } = pen.getImageData(0, 0, small.width, small.height);
+      pictures.push(Array.from(data));
+      if (pictures.length < moments.length) return look();
+      const found = document.createElement("pre");
+      found.id = "seen";
+      found.textContent = JSON.stringify(pictures);
+      document.body.append(found);
+    });
+  }
+  look();
+});
+</script></body>"""
 
 
 def browse(page: Path, *options: str) -> tuple[str, list[str]]:
@@ -120,3 +158,29 @@ def test_the_time_slider_shows_the_moment_that_it_is_set_to(replay, tmp_path):
         clocks.append(re.search(r'<output id="clock">([^<]*)<', document)[1])
     assert clocks == ["0.50 / 5.99 s", "2.50 / 5.99 s"]
     assert differing(shown[0], shown[1]) > 1000
+
+
+@pytest.fixture(scope="session", params=cell_names())
+def report(tmp_path_factory, request) -> Path:
+    """The report of a short run of a cell."""
+    cell, folder = request.param, tmp_path_factory.mktemp("report")
+    short = ["--duration", str(SHORT.get(cell, 0.5)), "--quiet"]
+    assert main(["run", cell, *short, "--out", str(folder)]) in (0, 1)
+    return folder / "report.html"
+
+
+def test_every_cells_report_opens_silently_and_its_replay_shows_three_moments(report):
+    begin, end = report.read_text(encoding="utf-8").rsplit("</body>", 1)
+    look = LOOK.replace("SMALL", str(list(SMALL))).replace(
+        "MOMENTS", str(list(MOMENTS))
+    )
+    page = report.with_name("looked.html")
+    page.write_text(begin + look + end, encoding="utf-8")
+    document, console = browse(page, "--virtual-time-budget=4000", "--dump-dom")
+    assert console == []
+    assert report.stat().st_size < 8_000_000
+    seen = re.search(r'<pre id="seen">(.*?)</pre>', document, re.DOTALL)
+    pixels = np.array(json.loads(html.unescape(seen[1])), dtype=float) / 255.0
+    first, second, third = pixels.reshape(3, *SMALL[::-1], 4)[..., :3]
+    assert min(map(np.std, (first, second, third))) > 0.1  # a scene, not the sky alone
+    assert min(differing(first, second), differing(second, third)) > 20
