@@ -29,7 +29,7 @@ class Log:
         torque: (T, n) commanded torques [Nm].
         qpos: (T, nq) of the whole simulated world; (T, 0) where it is not kept.
         errors: task name -> (T,) norm of its error, in the task's unit.
-        units: task name -> unit of its error, of the tasks at the start.
+        units: task name -> unit of its error.
         active: "level k: task: row" -> (T,) whether that bound was active.
         wrenches: sensor name -> (T, 6) what the controller saw [N, Nm].
         ranks: (T, p) directions that each level could use.
@@ -58,7 +58,8 @@ class Log:
         self.qpos = np.zeros((ticks, cell.model.nq if world else 0))
         self.ranks = np.zeros((ticks, len(controller.hierarchy)), dtype=int)
         self.errors = {task.name: np.full(ticks, np.nan) for task in tasks}
-        self.units = {task.name: task.unit for task in tasks}
+        self.units: dict[str, str] = {}
+        self._learn_units()
         self.active: dict[str, Array] = {}
         self.levels = LevelLog(ticks)
         self.wrenches: dict[str, Array] = {}
@@ -90,12 +91,17 @@ class Log:
             self._keep_ranks(tick, solution.ranks)
             for name, error in solution.error_norms():
                 if name not in self.errors:
+                    self._learn_units()
                     self.errors[name] = np.full(self.t.size, np.nan)
                 self.errors[name][tick] = error
             for name in solution.active_rows():
                 if name not in self.active:
                     self.active[name] = np.zeros(self.t.size, dtype=bool)
                 self.active[name][tick] = True
+
+    def _learn_units(self) -> None:
+        tasks = self._controller.hierarchy.tasks()
+        self.units |= {task.name: task.unit for task in tasks}
 
     def _keep_ranks(self, tick: int, ranks: tuple[int, ...]) -> None:
         """Another hierarchy may have more levels than the first one, or fewer."""

@@ -84,20 +84,32 @@ def test_a_log_keeps_every_tenth_tick_and_what_a_fallback_could_not_say():
     )
 
 
-@pytest.fixture(scope="module")
-def changed() -> Course:
-    """A run in which tasks trade places."""
+def switched(first: str, second: str) -> Course:
+    """A run in which one hierarchy hands over to another after 0.1 s."""
     arm = racer.load()
     cell = welding.cell(arm)
     cell.reset(READY)
     stacks = {name: stack for name, _, stack in events(arm, limited=False)}
-    controller = Controller(arm, stacks["task replaced"])
+    controller = Controller(arm, stacks[first])
 
     def script(t: float) -> None:
         if abs(t - 0.1) < 1e-9:
-            controller.change(stacks["priorities swapped"], 0.02)
+            controller.change(stacks[second], 0.02)
 
     return Course.of(run(cell, controller, 0.2, script=script))
+
+
+@pytest.fixture(scope="module")
+def changed() -> Course:
+    """Two tasks trade places."""
+    return switched("task replaced", "priorities swapped")
+
+
+def test_the_error_of_a_task_that_comes_later_has_its_unit():
+    errors = switched("start", "task added above").errors
+    assert list(errors) == ["posture [rad]", "near [m]"]
+    assert np.isnan(errors["near [m]"][:100]).all()
+    assert np.isfinite(errors["near [m]"][101:]).all()
 
 
 def test_a_task_that_changes_its_level_has_a_lane_at_each(changed):
