@@ -112,10 +112,13 @@ def lines3d(
         kept = thin_curve(points, budget)
         axes.plot(*points[kept].T, label=label, **look)
     axes.set_aspect("equal")
-    spans = {axis: np.ptp(getattr(axes, f"get_{axis}lim")()) for axis in "xyz"}
+    axes.set_box_aspect(axes.get_box_aspect(), zoom=0.82)  # labels stay inside
+    spans = {axis: float(np.ptp(getattr(axes, f"get_{axis}lim")())) for axis in "xyz"}
+    longest = max(spans.values())
     for axis, span in spans.items():
-        share = span / max(spans.values())
-        axes.locator_params(axis=axis, nbins=max(2, round(6.0 * share)))
-        getattr(axes, f"{axis}axis").labelpad = 2.0 + 16.0 * share
+        axes.locator_params(axis=axis, nbins=max(2, round(6.0 * span / longest)))
+        # Pads are measured along the other two axes, so thin boxes need larger ones.
+        thin = longest / (0.5 * (sum(spans.values()) - span))
+        getattr(axes, f"{axis}axis").labelpad = 8.0 * thin - 4.0
     legend(axes)
     return to_svg(figure, title)
