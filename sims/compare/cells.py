@@ -69,7 +69,8 @@ def write(
         runs=compared_figures({way: o.courses for way, o in outcomes.items()}),
         how_to_read=CAPTION,
         facts={r: f"{_folder(r)}/report.html" for r in outcomes},
-        data=[side_by_side(demo.name, outcomes), *regrets],
+        data=[side_by_side(demo.name, outcomes)],
+        annex=regrets,
     )
 
 

@@ -18,10 +18,20 @@ from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import Image, NoDisplay, data_url, render
 from wbc.arrays import Array
 
-__all__ = ["camera", "describe", "picture", "replay", "snapshots"]
+__all__ = [
+    "GUIDE_WIDTH",
+    "camera",
+    "describe",
+    "guide_lines",
+    "picture",
+    "replay",
+    "snapshots",
+]
 
 WIDTH, HEIGHT = 480, 320
 THIN: Final = 20
+GUIDE_WIDTH: Final = 3e-3
+"""Of the guide line in the replay [m]."""
 
 
 def camera(distance: float = 1.75) -> mujoco.MjvCamera:
@@ -94,7 +104,7 @@ def replay(run: Run) -> str:
         record.qpos,
         traces=[
             *_planned(run),
-            Trace("guide line in the meat", guide_lines(run), "#000000", 0.003),
+            Trace("guide line in the meat", guide_lines(run), "#000000", GUIDE_WIDTH),
             Trace("knife", way, PALETTE[1], 0.0015, record.t[::THIN]),
         ],
         arrows=[

@@ -49,6 +49,7 @@ def write_report(
     picture: Image | None = None,
     facts: Mapping[str, str] | None = None,
     data: Sequence[Table] = (),
+    annex: Sequence[Table] = (),
 ) -> None:
     """Write one self-contained page.
 
@@ -64,6 +65,7 @@ def write_report(
         picture: (height, width, 3), which stands for the replay on paper.
         facts: what the run was made with, such as resolver, versions and seed.
         data: tables of numbers that are not judged, each under its heading.
+        annex: more of them, below the figures.
 
     Raises:
         InputError: metrics of the same name, or a figure that is not one SVG element.
@@ -79,7 +81,8 @@ def write_report(
         body=body
         + "".join(map(as_html, data))
         + cards("Figures", figures)
-        + folded("Runs, level by level", how_to_read, runs),
+        + folded("Runs, level by level", how_to_read, runs)
+        + "".join(map(as_html, annex)),
     )
     Path(path).write_text(page, encoding="utf-8")
 

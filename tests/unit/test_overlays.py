@@ -129,6 +129,23 @@ def test_like_figures_are_folded_after_the_first_four(tmp_path):
     assert "run 5." in fold
 
 
+def test_tables_stand_above_the_figures_and_those_of_the_annex_below(tmp_path):
+    svg = time_series("t", [0.0, 1.0], {"y": [0.0, 1.0]}, "y [m]")
+    tables = [(name, [["a", "b"], ["1", "2"]]) for name in ("early", "late")]
+    path = tmp_path / "r.html"
+    write_report(
+        path,
+        title="t",
+        summary="",
+        metrics=[],
+        figures=[("drawn", svg)],
+        data=tables[:1],
+        annex=tables[1:],
+    )
+    page = path.read_text(encoding="utf-8")
+    assert page.index(">early<") < page.index(">drawn<") < page.index(">late<")
+
+
 def test_on_paper_a_picture_stands_for_the_replay(tmp_path):
     path = tmp_path / "r.html"
     picture = np.zeros((4, 6, 3), dtype=np.uint8)
