@@ -93,7 +93,7 @@ def test_the_replay_has_meat_guide_line_and_both_forces_thirty_times_a_second(us
 
 
 def test_the_guide_line_of_the_replay_is_where_the_knife_is_measured_against(usual):
-    """A row of links, and a surface through all of them: within the line's thickness."""
+    """A row of links and a surface through all differ by less than it is thick."""
     lines, guide = guide_lines(usual), usual.record.guide
     seen = np.flatnonzero(np.isfinite(guide[:, 0]))
     drawn = [np.interp(guide[j, 0], lines[j, :, 0], lines[j, :, 1]) for j in seen]
