@@ -2,7 +2,9 @@
 const THREE = MeshCat.THREE;
 const find = (id) => document.getElementById(id);
 const scene = JSON.parse(find("scene").textContent);
-const bytes = Uint8Array.from(atob(find("data").textContent), (c) => c.charCodeAt(0));
+const packed = atob(find("data").textContent);
+const bytes = new Uint8Array(packed.length);
+for (let i = 0; i < packed.length; i++) bytes[i] = packed.charCodeAt(i);
 const views = { f4: Float32Array, u4: Uint32Array, u2: Uint16Array };
 const array = (at) => new views[at.kind](bytes.buffer, at.offset, at.count);
 const times = array(scene.times);
