@@ -105,7 +105,7 @@ def replay(run: Run) -> str:
         traces=[
             *_planned(run),
             Trace("guide line in the meat", guide_lines(run), "#000000", GUIDE_WIDTH),
-            Trace("knife", way, PALETTE[1], 0.0015, record.t[::THIN]),
+            Trace("knife", way, PALETTE[5], 0.0015, record.t[::THIN]),
         ],
         arrows=[
             Arrow("knife on meat", record.tip[::EVERY], felt[CUTTER][::EVERY, :3]),
