@@ -13,7 +13,8 @@ from sims.cutting.figures import figures
 from sims.cutting.loop import Run, run_job
 from sims.cutting.meat import Meat
 from sims.cutting.metrics import metrics
-from sims.cutting.pictures import camera, describe, picture, replay
+from sims.cutting.pictures import camera, describe, picture
+from sims.cutting.playback import replay
 from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
 from sims.demo import Demo, Options, Outcome

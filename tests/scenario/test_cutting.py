@@ -15,7 +15,7 @@ from sims.cutting.layout import Plan
 from sims.cutting.loop import run_job
 from sims.cutting.meat import Meat, Toughness
 from sims.cutting.metrics import guide_error, metrics
-from sims.cutting.pictures import GUIDE_WIDTH, guide_lines, replay
+from sims.cutting.playback import GUIDE_WIDTH, interface_lines, replay
 from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
 from sims.demo import Options
@@ -94,7 +94,7 @@ def test_the_replay_has_meat_guide_line_and_both_forces_thirty_times_a_second(us
 
 def test_the_guide_line_of_the_replay_is_where_the_knife_is_measured_against(usual):
     """A row of links and a surface through all differ by less than it is thick."""
-    lines, guide = guide_lines(usual), usual.record.guide
+    lines, guide = interface_lines(usual), usual.record.guide
     seen = np.flatnonzero(np.isfinite(guide[:, 0]))
     drawn = [np.interp(guide[j, 0], lines[j, :, 0], lines[j, :, 1]) for j in seen]
     assert np.abs(drawn - guide[seen, 1]).max() < 0.5 * GUIDE_WIDTH
