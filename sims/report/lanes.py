@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final, final
 
 import numpy as np
@@ -44,20 +44,27 @@ class Lane:
 
     t: Array
     share: Array
-    rows: dict[str, Array] = field(default_factory=dict)
+    rows: dict[str, Array]
 
 
 def lanes_of(course: Course) -> dict[tuple[int, str], Lane]:
     """Lanes of a run, from the top level down."""
-    lanes = {
-        key: Lane(course.sampled, share)
-        for key, share in sorted(course.shortfall.items(), key=lambda pair: pair[0][0])
+    ordered = sorted(course.shortfall.items(), key=lambda pair: pair[0][0])
+    return {
+        (level, task): Lane(
+            course.sampled, share, _named_after(f"level {level}: {task}: ", course)
+        )
+        for (level, task), share in ordered
     }
-    for name, active in course.active.items():
-        level, task, row = name.removeprefix("level ").split(": ", 2)
-        if (int(level), task) in lanes:  # else it came and went between two samples
-            lanes[int(level), task].rows[row] = active
-    return lanes
+
+
+def _named_after(prefix: str, course: Course) -> dict[str, Array]:
+    """Bounds of one task, by what is left of their names."""
+    return {
+        name.removeprefix(prefix): active
+        for name, active in course.active.items()
+        if name.startswith(prefix)
+    }
 
 
 def aligned(runs: Iterable[Course]) -> dict[tuple[int, str], tuple[str, ...]]:

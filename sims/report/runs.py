@@ -104,7 +104,7 @@ def _finish(first: list[Axes], names: list[str]) -> None:
     lanes, error, load = first
     keys_above(lanes, lane_keys(), columns=5)
     name_curves(error, names)
-    units = ", ".join(name[name.rindex("[") + 1 : -1] for name in names)
+    units = ", ".join(name[name.rindex("[") + 1 : -1] for name in names) or "1"
     parts = dict.fromkeys(units.split(", "))
     error.set_ylabel(f"task error\n[{', '.join(parts)}]")
     keys = load.get_legend_handles_labels()[0]
