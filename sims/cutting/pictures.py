@@ -67,7 +67,8 @@ def _contact_sheet(shots: list[tuple[str, str]], columns: int = 3) -> str:
         parts.append(
             f'<image x="{x}" y="{y}" width="{WIDTH}" height="{HEIGHT}" '
             f'href="{data}"/><text x="{x + 12}" y="{y + 26}" '
-            f'font-family="sans-serif" font-size="20">{html.escape(name)}</text>'
+            f'font-family="sans-serif" font-size="20" stroke="#fff" stroke-width="4" '
+            f'paint-order="stroke">{html.escape(name)}</text>'
         )
     size = f"0 0 {columns * WIDTH} {rows * HEIGHT}"
     return (
