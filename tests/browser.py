@@ -8,6 +8,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,14 @@ FLAGS = [
 HARMLESS = ("GL Driver Message",)  # remarks of the software renderer on its speed
 PATIENCE = 120.0
 """Longest wait for an answer [s]."""
+LAUNCH = """
+import fcntl, os, sys
+ends = [fcntl.fcntl(int(end), fcntl.F_DUPFD, 10) for end in sys.argv[1:3]]
+for place, end in zip((3, 4), ends):
+    os.dup2(end, place)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
+"""The browser reads what it is told from file 3, and answers on file 4."""
 
 
 class Browser:
@@ -35,15 +44,9 @@ class Browser:
         to_browser, self._write = os.pipe()
         self._read, from_browser = os.pipe()
         command = [
-            "/bin/sh",
-            "-c",
-            f'exec "$@" 3<&{to_browser} 4>&{from_browser}',
-            "sh",
-            str(BROWSER),
-            *FLAGS,
-            f"--window-size={width},{height}",
-            f"--user-data-dir={profile}",
-            "--remote-debugging-pipe",
+            *(sys.executable, "-c", LAUNCH, str(to_browser), str(from_browser)),
+            *(str(BROWSER), *FLAGS, "--remote-debugging-pipe"),
+            *(f"--window-size={width},{height}", f"--user-data-dir={profile}"),
         ]
         self._process = subprocess.Popen(
             command, pass_fds=(to_browser, from_browser), stderr=subprocess.DEVNULL
