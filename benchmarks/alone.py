@@ -149,7 +149,9 @@ def _cold_and_warm(
                 for solver in solvers:
                     one = times[solver.name]
                     if one.spent < SLOW:
-                        _time(solver, problem, one, [])  # caches, after the others
+                        solver.reset()
+                        # Caches, after the others: with the very work that is timed.
+                        _time(solver, problem, one, [])
                         solver.reset()
                         _time(solver, problem, one, one.cold)
                         if solver.remembers:

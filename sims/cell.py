@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import final
 
@@ -45,12 +46,14 @@ class Cell(ABC):
         robot: the controller's model of the robot.
         model: the simulated world, which may differ from it.
         data: its state.
+        wrists: its force sensors; none unless it says so.
     """
 
     name: str
     robot: Robot
     model: mujoco.MjModel
     data: mujoco.MjData
+    wrists: Sequence[WristSensor] = ()
 
     @abstractmethod
     def reset(self, q: Array) -> None:
@@ -98,6 +101,7 @@ class ArmCell(Cell):
     ) -> None:
         self.name, self.robot, self._wrist = name, robot, wrist
         if wrist is not None:
+            self.wrists = (wrist,)
             wrist.mount(spec)
         self.model = spec.compile()
         self._joints = [self._joint(joint) for joint in robot.joint_names]
@@ -162,4 +166,4 @@ class ArmCell(Cell):
     @property
     def truth(self) -> tuple[Array, Array]:
         """Real positions and velocities (n,) of the arm."""
-        return self.data.qpos[self._qpos].copy(), self.data.qvel[self._dofs].copy()
+        return self.data.qpos[self._qpos], self.data.qvel[self._dofs]

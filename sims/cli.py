@@ -9,6 +9,7 @@ from importlib.metadata import version
 
 from sims.commands import audit_model, bench, compare, list_cells, run_cell
 from sims.demo import Options
+from sims.view import WindowClosed
 from wbc import WbcError
 
 __all__ = ["main"]
@@ -18,7 +19,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Returns:
-        0 if everything held, 1 if a bound did not, 2 on bad usage.
+        0 if everything held, 1 if a bound did not, 2 on bad usage, 130 if the user
+        ended it.
     """
     parser = _parser()
     asked = parser.parse_args(arguments)
@@ -27,6 +29,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except WbcError as error:
         sys.stderr.write(f"wbc: {error}\n")
         return 2
+    except WindowClosed:
+        sys.stderr.write("\nwbc: the window was closed, nothing was judged\n")
+        return 130
     except KeyboardInterrupt:
         sys.stderr.write("\nwbc: interrupted\n")
         return 130
@@ -47,6 +52,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--resolver", default="hqp", help=RESOLVERS)
     run.add_argument("--experiment", default="", help="such as initial (cutting)")
     run.add_argument("--view", action="store_true", help="open a window")
+    run.add_argument(
+        "--video", metavar="FILE.mp4", help="film it; needs pip install 'wbc[video]'"
+    )
     _common(run)
     against = _add(
         commands,
@@ -118,6 +126,7 @@ def _options(asked: argparse.Namespace) -> Options:
         seed=asked.seed,
         mismatch=asked.mismatch,
         view=getattr(asked, "view", False),
+        video=getattr(asked, "video", None),
         experiment=getattr(asked, "experiment", ""),
         combined=asked.combined,
         quiet=asked.quiet,

@@ -23,6 +23,7 @@ from sims.report.page import write_report
 from sims.report.runs import CAPTION, level_figures
 from sims.report.snapshot import Image, NoDisplay, write_png
 from sims.resolvers import make_resolver
+from sims.view import check_video
 from wbc import InputError, UnknownName
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
@@ -46,6 +47,8 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     if options.experiment and options.experiment not in demo.experiments:
         raise UnknownName("experiment", options.experiment, demo.experiments)
     folder = None if out is None else _folder(out)
+    if options.video is not None:
+        check_video(options.video)
     began = time.perf_counter()
     outcome = demo.run(options)
     print(table(outcome.metrics))

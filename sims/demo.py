@@ -24,6 +24,7 @@ class Options:
         seed: of everything random.
         mismatch: simulate a robot that differs from the controller's model.
         view: open a window while it runs.
+        video: file for a video of it; None for none.
         quiet: no progress bar.
         experiment: which of the cell's experiments; "" for its first, or none.
         combined: both arms of a cell under one hierarchy.
@@ -34,6 +35,7 @@ class Options:
     seed: int = 0
     mismatch: bool = False
     view: bool = False
+    video: str | None = None
     quiet: bool = False
     experiment: str = ""
     combined: bool = False

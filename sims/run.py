@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from sims.cell import Cell
+from sims.cell import Cell, Observation
 from sims.log import Log
 from wbc import Controller, InputError, Solution
 from wbc.arrays import Array
@@ -19,6 +19,7 @@ from wbc.arrays import Array
 __all__ = [
     "CERTIFY_EVERY",
     "Bar",
+    "Decision",
     "Probe",
     "Watcher",
     "current_probe",
@@ -30,11 +31,22 @@ CERTIFY_EVERY = 50
 """Ticks between two certificates, which cost more than a tick."""
 
 
+class Decision(NamedTuple):
+    """What a controller saw at a tick, and what it made of it."""
+
+    controller: Controller
+    seen: Observation
+    solution: Solution
+
+
 class Watcher(Protocol):
     """Something that looks at every tick, such as a viewer."""
 
-    def __call__(self, cell: Cell, solution: Solution) -> bool:
-        """See a tick; false ends the run."""
+    def __call__(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
+        """See a tick after its time step, a decision a controller; false ends the run.
+
+        What it raises ends the run, too.
+        """
 
 
 class Probe(Protocol):
@@ -122,7 +134,8 @@ def run(
             )
         if probe is not None:
             probe(tick, controller, solution, seen.q, seen.v)
-        if watch is not None and not watch(cell, solution):
+        decision = Decision(controller, seen, solution)
+        if watch is not None and not watch(cell, (decision,)):
             break
         bar.show(tick + 1)
     bar.close()

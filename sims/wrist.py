@@ -62,6 +62,7 @@ class WristSensor:
     ) -> None:
         self.site, self.name, self.tare = site, name, tare
         self._noise = _both(force_noise, torque_noise, "noise")
+        self._noisy = bool(self._noise.any())
         self._bias = _both(force_bias, torque_bias, "bias")
         self.cutoff = np.inf if cutoff == np.inf else positive(cutoff, "cutoff")
         self._seed = seed
@@ -114,7 +115,7 @@ class WristSensor:
     def read(self, data: mujoco.MjData) -> Array:
         """Wrench (6,) of the tool ON its surroundings, at the site, world axes."""
         wrench = self._wrench(data) + self._zero
-        if self._noise.any():
+        if self._noisy:
             wrench = wrench + self._rng.normal(0.0, self._noise)
         if self._filtered is None or self.cutoff == np.inf:
             self._filtered = wrench

@@ -93,7 +93,6 @@ class HybridForceMotion(TouchTask):
         self.approach = positive(approach, "approach", zero=True)
         self._contact = Contact(threshold)
         self._target = np.zeros((3, 6))
-        self._R_d = np.eye(3)
         if S.size == 6 and orientation is None:
             raise InputError(f"'{name}' has six rows: give it an orientation.")
         self.set_target(target, orientation)

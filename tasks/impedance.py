@@ -69,13 +69,10 @@ class _Compliant(TouchTask):
     def reset(self) -> None:
         """Nothing is remembered."""
 
-    def _respond(self, x: Array, v: Array, h: Array) -> Array:
-        """Acceleration (3,) in D of the mass at x, v (world) under h (D)."""
-        p_d, v_d, a_d = self._target
-        spring = self.stiffness * (self._R.T @ (x - p_d))
-        damper = self.damping * (self._R.T @ (v - v_d))
-        pull = self._force - h - damper - spring
-        acceleration: Array = self._R.T @ a_d + pull / self.mass
+    def _respond(self, error: Array, rate: Array, h: Array) -> Array:
+        """Acceleration (3,) of the mass under h, at x - x_d and its rate, all in D."""
+        pull = self._force - h - self.damping * rate - self.stiffness * error
+        acceleration: Array = self._R.T @ self._target[2] + pull / self.mass
         return acceleration
 
 
@@ -130,7 +127,7 @@ class Impedance(_Compliant):
         self._J, self._h = F.J, self._wrench(state, F)
         rows.error[:] = self._R.T @ (F.p - self._target[0])
         rows.rate[:] -= self._R.T @ self._target[1]
-        wish = self._respond(F.p, F.V[:3], self._R.T @ self._h[:3])
+        wish = self._respond(rows.error, rows.rate, self._R.T @ self._h[:3])
         rows.lower[:] = rows.upper[:] = wish - rows.drift
 
     def advance(self, state: State, torque: Array) -> None:
@@ -196,8 +193,10 @@ class Admittance(_Compliant):
         if self._reference is None:
             self._reference = F.p.copy(), F.V[:3].copy()
         x, v = self._reference
+        p_d, v_d, _ = self._target
+        error, rate = self._R.T @ (x - p_d), self._R.T @ (v - v_d)
         h = self._R.T @ self._wrench(state, F)[:3]
-        self._acceleration = self._respond(x, v, h)
+        self._acceleration = self._respond(error, rate, h)
         rows.error[:] = self._R.T @ (F.p - x)
         rows.rate[:] -= self._R.T @ v
         wish = self.following.acceleration(rows.error, rows.rate)

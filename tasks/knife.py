@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
-from wbc import PD, FrameState, Kernel, Robot, Rows, State
-from wbc.arrays import ROTATION_TOLERANCE, Array
+from tasks.kernels.pose import INFINITE, NO_ROTATION, take_pose
+from wbc import PD, Kernel, Robot, Rows, State
+from wbc.arrays import Array
 from wbc.errors import InputError, UnknownName
 from wbc.kernel import NO_TABLE
 
@@ -18,7 +19,6 @@ __all__ = ["KnifePose"]
 
 STILL = np.zeros(6)
 STILL.flags.writeable = False
-IDENTITY = np.eye(3)
 SHAPES = ((3,), (3, 3), (6,), (6,))
 WHAT = ("position", "orientation", "twist", "acceleration")
 NORMAL, ACROSS, DOWN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
@@ -86,20 +86,27 @@ class KnifePose(CatalogueTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p, R, V, A = map(np.asarray, (position, orientation, twist, acceleration))
-        for array, shape, what in zip((p, R, V, A), SHAPES, WHAT, strict=True):
-            if array.shape != shape:
-                raise InputError(
-                    f"target {what} of '{self.name}' has shape {array.shape}; it must "
-                    f"be {shape}."
-                )
-        target = np.concatenate([p, V[:3], A[:3], R.ravel(), V[3:], A[3:]])
-        if not np.isfinite(target).all():
+        given = (position, orientation, twist, acceleration)
+        p, R, V, A = target = [_numbers(x) for x in given]
+        if (p.shape, R.shape, V.shape, A.shape) != SHAPES:
+            raise self._misshapen(target)
+        fault = take_pose(p, R, V, A, self._parameters)
+        if fault == INFINITE:
             raise InputError(f"target of '{self.name}' must be finite, got {target}.")
-        if np.abs(R @ R.T - IDENTITY).max() > ROTATION_TOLERANCE or _turned(R) < 0.0:
+        if fault == NO_ROTATION:
             raise InputError(f"orientation of '{self.name}' is no rotation: {R}.")
-        self._parameters[:] = target
-        self._axis[9:12], self._axis[12:15], self._axis[15:] = R[:, 1], V[3:], A[3:]
+        if self.rocking:
+            axis = self._axis
+            axis[9:12], axis[12:15], axis[15:] = R[:, 1], V[3:], A[3:]
+
+    def _misshapen(self, target: list[Array]) -> InputError:
+        """Which part of a target has the wrong shape."""
+        parts = zip(target, SHAPES, WHAT, strict=True)
+        array, shape, what = next(part for part in parts if part[0].shape != part[1])
+        return InputError(
+            f"target {what} of '{self.name}' has shape {array.shape}; it must be "
+            f"{shape}."
+        )
 
     def parameters(self, robot: Robot) -> Array:
         """Those of `FramePose`, live."""
@@ -134,14 +141,15 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        F: FrameState = state.frame(self.sensor_frame)
-        torque += F.J.T @ measured
+        torque += state.jacobian(self.sensor_frame).T @ measured
 
 
-def _turned(R: Array) -> float:
-    """Determinant of R (3, 3): -1 for a mirror image."""
-    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
-    return float(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g))
+def _numbers(value: ArrayLike) -> Array:
+    """A copy in the one memory layout that the kernel is compiled for."""
+    try:
+        return np.array(value, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as error:
+        raise InputError(f"a knife's target must be numbers, got {value!r}.") from error
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

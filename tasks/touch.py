@@ -7,6 +7,7 @@ from abc import abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.kernels.touch import in_axes
 from wbc import FrameState, Robot, Rows, State, Task
 from wbc.arrays import Array, rotation
 from wbc.errors import InputError, SolverError
@@ -35,6 +36,9 @@ class TouchTask(Task):
         InputError: the axes are no rotation; at the first tick, the sensor is missing.
     """
 
+    _target: Array
+    _force: Array
+
     def __init__(
         self,
         name: str,
@@ -48,7 +52,7 @@ class TouchTask(Task):
         super().__init__(name, unit, (frame, sensor_frame))
         self.frame, self.sensor, self.sensor_frame = frame, sensor, sensor_frame
         self.size = rows
-        self._R, self._heard = np.eye(3), False
+        self._R, self._R_d, self._heard = np.eye(3), np.eye(3), False
         if axes is not None:
             self.set_axes(axes)
 
@@ -58,12 +62,27 @@ class TouchTask(Task):
         Raises:
             InputError: no rotation; the axes stay as they were.
         """
-        self._R = rotation(axes, f"axes of '{self.name}'")
+        self._R = np.array(rotation(axes, f"axes of '{self.name}'"))
 
     @property
     def axes(self) -> Array:
         """R_WD, (3, 3)."""
         return self._R.copy()
+
+    @property
+    def target(self) -> Array:
+        """Where F's origin should be in the directions that move, (3,) [m]."""
+        return self._target[0, :3].copy()
+
+    @property
+    def orientation(self) -> Array:
+        """R_d, (3, 3); the identity where three rows do not turn."""
+        return self._R_d.copy()
+
+    @property
+    def force(self) -> Array:
+        """What F should exert, in D, one number a row [N, Nm]."""
+        return self._force.copy()
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """Linear directions, then angular ones."""
@@ -92,11 +111,7 @@ class TouchTask(Task):
     def _kinematics(self, state: State, rows: Rows) -> FrameState:
         """Write A and drift, and the rates of a target at rest."""
         F = state.frame(self.frame)
-        n = state.robot.nv
-        for k in range(0, self.size, 3):
-            rows.A[k : k + 3] = self._R.T @ F.J[k : k + 3].reshape(3, n)
-        rows.drift[:] = self._split(F.drift)
-        rows.rate[:] = self._split(F.V)
+        in_axes(self._R, F.J, F.V, F.drift, rows.A, rows.rate, rows.drift)
         return F
 
     def _wrench(self, state: State, F: FrameState) -> Array:
@@ -118,7 +133,7 @@ class TouchTask(Task):
             )
         self._heard = True
         f0, f1, f2 = measured[:3].tolist()
-        a0, a1, a2 = (state.frame(self.sensor_frame).p - F.p).tolist()
+        a0, a1, a2 = (state.position(self.sensor_frame) - F.p).tolist()
         wrench = measured.copy()
         wrench[3] += a1 * f2 - a2 * f1
         wrench[4] += a2 * f0 - a0 * f2

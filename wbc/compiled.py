@@ -19,7 +19,7 @@ from typing import Any, Final, TypeVar, cast
 
 import numba
 
-from wbc.linking import KERNEL, PART
+from wbc.linking import KERNEL, PART, WHOLE
 
 __all__ = ["announce", "compiled", "inner", "python"]
 
@@ -38,7 +38,7 @@ def _digest() -> str:
     for folder in (here, here.with_name("tasks")):
         for source in sorted(folder.rglob("*.py")):
             text = source.read_bytes()
-            if b"wbc.compiled" in text or b"NamedTuple" in text:
+            if b"wbc.compiled" in text or b"NamedTuple" in text or b"numba" in text:
                 digest.update(text)
     return digest.hexdigest()[:16]
 
@@ -69,7 +69,7 @@ def compiled(function: Function) -> Function:
     of another allocates, in case they overlap.) Others that call it take its code
     as optimised on its own: a result does not depend on the door it came in by.
     """
-    kernel: Any = _compile(function, {"cache": CACHE is not None})
+    kernel: Any = _compile(function, WHOLE | {"cache": CACHE is not None})
     within: Any = _compile(function, KERNEL)
     kernel.get_call_template = within.get_call_template
     kernel.get_overload = within.get_overload

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import final
 
-import numpy as np
-
-from wbc.arrays import Array, positive
-from wbc.linalg import Factor
+from wbc.arrays import positive
 
 __all__ = ["DampedInverse"]
 
@@ -16,12 +13,12 @@ __all__ = ["DampedInverse"]
 class DampedInverse:
     """Damping for the force only; a projector must never contain it, or it leaks.
 
-    A direction of relative singular value s < threshold is inverted with
-    lambda^2 = (1 - (s / threshold)^2) factor^2, and its motion is damped towards rest:
-    what the task does not get there goes to -rate times the velocity. Damped towards
-    zero acceleration, as in a plain damped inverse, that velocity would never die, and
-    an arm stretched for a goal beyond its reach would swing about its border (Wampler
-    and Leifer 1988).
+    In a direction of relative singular value s < threshold a level J minimises
+    |J x - b|^2 + lambda^2 |x - rest|^2, lambda^2 = (1 - (s / threshold)^2) factor^2,
+    so that its motion is damped towards rest: what the task does not get there goes to
+    -rate times the velocity. Damped towards zero acceleration, as in a plain damped
+    inverse, that velocity would never die, and an arm stretched for a goal beyond its
+    reach would swing about its border (Wampler and Leifer 1988).
 
     Args:
         threshold: relative to the norm of the unprojected task.
@@ -38,17 +35,3 @@ class DampedInverse:
         self.threshold = positive(threshold, "threshold")
         self.factor = positive(factor, "factor")
         self.rate = positive(rate, "rate")
-
-    def solve(self, factor: Factor, b: Array, scale: float, rest: Array) -> Array:
-        """Minimiser z (n,) of |A z - b|^2 + lambda^2 |z - rest|^2 in the row space.
-
-        Args:
-            factor: of A.
-            b: (m,) what A z should be.
-            scale: norm of the task before projection.
-            rest: (n,) what z would be if all motion were to die out.
-        """
-        s = factor.sigma / scale
-        square = np.maximum(1.0 - (s / self.threshold) ** 2, 0.0) * self.factor**2
-        wanted = s / scale * (factor.U.T @ b)
-        return factor.V1 @ ((wanted + square * (factor.V1.T @ rest)) / (s * s + square))

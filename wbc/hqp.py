@@ -61,7 +61,7 @@ class _Compiled(Solver):
         self._stack, self._solver = stack, Lexicographic(sizes, n)
         self._torque, self._vdot = slice(n), slice(n, 2 * n)
         self._slack, self._ranks = slice(2 * n, 2 * n + m), slice(2 * n + m, None)
-        stack.connect(self._solver.floats, self._solver.integers)
+        stack.connect(self._solver.address)
 
     def tick(self, stack: Stack, state: State) -> Answer:
         """The same in one compiled call."""

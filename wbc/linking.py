@@ -16,17 +16,31 @@ from typing import Any, Final
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]  # comes with numba
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.typed_passes import AnnotateTypes
 
-__all__ = ["KERNEL", "PART"]
+__all__ = ["KERNEL", "PART", "WHOLE"]
 
 ENVIRONMENT = "NumbaEnv"
 """In the name of the variable by which numba hands a function its Python globals."""
 
 
-class _Kernel(JITCodeLibrary):
+class _Whole(JITCodeLibrary):
+    """Code for short vectors: loops as they are written, four terms at a time.
+
+    Vector units are used where a loop's body has room for them. Loops made for long
+    vectors never reach their fast part here, and are many times larger.
+    """
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=True
+        )
+        passes.run(self._final_module, builder)
+
+
+class _Kernel(_Whole):
     """Optimised code without machine code."""
 
     def _finalize_final_module(self) -> None:
@@ -58,7 +72,14 @@ class _Into(LoweringPass):
     def run_pass(self, state: Any) -> bool:
         codegen, name = state.targetctx.codegen(), state.func_id.func_qualname
         state.library = self.library(codegen, name)
+        if self.library is _Whole:
+            state.library.enable_object_caching()
         return True
+
+
+@register_pass(mutates_CFG=False, analysis_only=True)
+class _IntoWhole(_Into):
+    _name, library = "wbc_into_whole", _Whole
 
 
 @register_pass(mutates_CFG=False, analysis_only=True)
@@ -71,19 +92,63 @@ class _IntoPart(_Into):
     _name, library = "wbc_into_part", _Part
 
 
-class _AsKernel(CompilerBase):
-    """Numba's own passes, but for the library."""
+NEEDLESS: Final = {
+    "with_lifting",
+    "inline_closure_likes",
+    "dead_branch_prune",
+    "Rewrite dynamic raises",
+    "make_function_op_code_to_jit_function",
+    "inline_inlinables",
+    "literal_unroll",
+    "inline_overloads",
+    "nopython_rewrites",
+}
+"""Passes for what kernels do not have: closures, array expressions, branches on types,
+raised exceptions."""
 
-    into: Any = _IntoKernel
+
+HASH: Final = hash(Flags())
+"""Numba's hash of them: of their names, and so the same for all."""
+
+
+class _Flags(Flags):
+    """Numba's options of a compilation, quick to compare.
+
+    It looks up every overload by its options, 60,000 times in a first compilation.
+    """
+
+    __slots__ = ()
+
+    def __hash__(self) -> int:
+        return HASH
+
+    def __eq__(self, other: object) -> bool:
+        same = isinstance(other, Flags) and self._values == other._values
+        return same or bool(super().__eq__(other))
+
+
+class _AsWhole(CompilerBase):
+    """Numba's own passes, less the needless ones, and our library."""
+
+    into: Any = _IntoWhole
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.state.flags = _Flags(self.state.flags)
 
     def define_pipelines(self) -> list[Any]:
         passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
         passes.add_pass_after(self.into, AnnotateTypes)
+        passes.passes = [one for one in passes.passes if one[0].name() not in NEEDLESS]
         passes.finalize()
         return [passes]
 
 
-class _AsPart(_AsKernel):
+class _AsKernel(_AsWhole):
+    into = _IntoKernel
+
+
+class _AsPart(_AsWhole):
     into = _IntoPart
 
 
@@ -94,11 +159,13 @@ INSIDE: Final = {"cache": False, "no_cpython_wrapper": True, "no_cfunc_wrapper":
 behind it."""
 
 
-def _options(pipeline: type[_AsKernel]) -> dict[str, Any]:
-    return INSIDE | ({"pipeline_class": pipeline} if KNOWN else {})
+def _options(pipeline: type[_AsWhole]) -> dict[str, Any]:
+    return {"pipeline_class": pipeline} if KNOWN else {}
 
 
-KERNEL: Final = _options(_AsKernel)
-"""Options of `numba.njit` for a kernel in others: the same code through any door."""
-PART: Final = _options(_AsPart)
+WHOLE: Final = _options(_AsWhole)
+"""Options of `numba.njit` for a kernel as Python calls it."""
+KERNEL: Final = INSIDE | _options(_AsKernel)
+"""For a kernel in others: the same code through any door."""
+PART: Final = INSIDE | _options(_AsPart)
 """And for what is only ever a part of kernels."""

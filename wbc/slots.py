@@ -13,9 +13,9 @@ INERTIA, BIAS, VDOT_ROWS, Y_ROWS, BOUNDS, L_INV = 8, 9, 10, 11, 12, 13
 """Addresses of a stack's arrays."""
 PROGRAM, GAINS, POINTERS, CONSTANTS, BLOCKS, JACOBIAN, SCRATCH = range(14, 21)
 """Of what compiled tasks read and write."""
-FLOATS, INTEGERS = 21, 23
-"""Of the solver's memory, each followed by its size."""
-SIZE = 25
+SOLVER = 21
+"""Of the table of the solver's memory."""
+SIZE = 22
 
 SOLVED, NOT_POSITIVE, UNSOLVED, NOT_FINITE = -1, -2, -3, -4
 """How a tick can end, besides with the index of a row that is not finite: well; with

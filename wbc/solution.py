@@ -10,7 +10,8 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.certificate import Certificate, certify, slack_of
+from wbc.bounds import at_bounds
+from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.resolver import Answer, Status
@@ -18,8 +19,6 @@ from wbc.stack import Stack, Term
 from wbc.task import MotionTask
 
 __all__ = ["Solution", "TaskReport"]
-
-AT_BOUND = 1e-7
 
 
 @final
@@ -98,7 +97,7 @@ class Solution:
 
         Empty after a fallback.
         """
-        return () if self._ranks is None else tuple(int(rank) for rank in self._ranks)
+        return () if self._ranks is None else tuple(map(int, self._ranks.tolist()))
 
     @property
     def lost(self) -> tuple[int, ...]:
@@ -193,11 +192,8 @@ class Solution:
     def active_rows(self) -> list[str]:
         """Inequality rows at a bound or beyond it, as "level k: task: row"."""
         stack = self._fresh()
-        value = stack.A @ self.acceleration
-        near = AT_BOUND * (1.0 + np.abs(value))
-        at = (value > stack.upper - near) | (value < stack.lower + near)
-        at &= stack.lower < stack.upper
-        if not at.any():
+        at = np.empty(stack.lower.size, dtype=np.bool_)
+        if not at_bounds(stack.A, self.acceleration, stack.lower, stack.upper, at):
             return []
         return [
             f"level {term.level + 1}: {term.task.name}: {name}"
@@ -231,15 +227,13 @@ class Solution:
         where = term.where
         A, lower, upper = stack.A[where], stack.lower[where], stack.upper[where]
         slack = slack_of(A, self.acceleration, lower, upper)
-        value = A @ self.acceleration
-        near = AT_BOUND * (1.0 + np.abs(value))
-        inequality = lower < upper
-        at = inequality & ((value > upper - near) | (value < lower + near))
+        at = np.empty(lower.size, dtype=np.bool_)
+        at_bounds(A, self.acceleration, lower, upper, at)
         return TaskReport(
             name=term.task.name,
             level=term.level + 1,
             unit=term.task.unit,
-            error=np.where(inequality, np.nan, term.rows.error),
+            error=np.where(lower < upper, np.nan, term.rows.error),
             residual=slack / term.weight,
             active=tuple(n for n, a in zip(term.names, at, strict=True) if a),
         )

@@ -7,7 +7,7 @@ from typing import NoReturn, final
 import numpy as np
 
 from wbc import slots
-from wbc.arrays import Array, IntArray
+from wbc.arrays import Array
 from wbc.assembly import back_substitute, inverse_dynamics
 from wbc.binding import register
 from wbc.compiled import announce
@@ -160,15 +160,13 @@ class Stack:
         if outcome != slots.SOLVED:
             self._complain(outcome)
 
-    def connect(self, floats: Array, integers: IntArray) -> None:
-        """Let `resolve` use this memory of a compiled solver, which must stay alive."""
-        self._solver = floats, integers
-        self._table[slots.FLOATS :] = [
-            address_of(floats),
-            floats.size,
-            address_of(integers),
-            integers.size,
-        ]
+    def connect(self, solver: int) -> None:
+        """Let `resolve` use a compiled solver, which must stay alive.
+
+        Args:
+            solver: address of its memory.
+        """
+        self._table[slots.SOLVER] = solver
 
     def resolve(self, state: State) -> tuple[Array, bool]:
         """Rewrite all rows and solve them with the connected solver, in one call.

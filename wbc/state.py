@@ -82,6 +82,30 @@ class State:
             known = self._frames[name] = self._compute(self.robot.frame_id(name))
         return known
 
+    def position(self, name: str) -> Array:
+        """Origin (3,) of a frame in the world [m]; cheap where no more is wanted.
+
+        Raises:
+            UnknownName: the robot has no such frame.
+        """
+        model, data = self.robot.model, self.data
+        X_WF = pin.updateFramePlacement(model, data, self.robot.frame_id(name))
+        return np.array(X_WF.translation)
+
+    def jacobian(self, name: str) -> Array:
+        """Jacobian (6, n) of a frame's twist, as in its `FrameState`; cheap likewise.
+
+        Raises:
+            UnknownName: the robot has no such frame.
+        """
+        return self._jacobian(self.robot.frame_id(name))
+
+    def _jacobian(self, index: int) -> Array:
+        model, data = self.robot.model, self.data
+        pin.updateFramePlacement(model, data, index)
+        J = pin.getFrameJacobian(model, data, index, WORLD_ALIGNED)
+        return np.ascontiguousarray(J.reshape(6, model.nv))  # (6,) for a single column
+
     def wrench(self, sensor: str) -> Array:
         """Measured wrench (6,) of the robot on the environment, world axes.
 
@@ -115,9 +139,7 @@ class State:
         if not self._moved:
             pin.forwardKinematics(model, data, self.q, self.v, self._zero)
             self._moved = True
-        X_WF = pin.updateFramePlacement(model, data, index)
-        J = pin.getFrameJacobian(model, data, index, WORLD_ALIGNED)
-        J = np.ascontiguousarray(J.reshape(6, model.nv))  # (6,) for a single column
+        J, X_WF = self._jacobian(index), data.oMf[index]
         drift = pin.getFrameClassicalAcceleration(model, data, index, WORLD_ALIGNED)
         return FrameState(
             np.array(X_WF.translation),

@@ -7,8 +7,8 @@ from wbc.arrays import Array, IntArray
 from wbc.assembly import assemble, back_substitute, inverse_dynamics
 from wbc.compiled import compiled, inner
 from wbc.lexicographic.solver import lexicographic
-from wbc.lexicographic.work import unpack
-from wbc.pointers import floats_at, integers_at
+from wbc.lexicographic.work import work_at
+from wbc.pointers import floats_at
 
 __all__ = ["conclude", "without_kernels"]
 
@@ -45,10 +45,8 @@ def conclude(table: IntArray, out: Array) -> int:
     )
     if outcome != slots.SOLVED or out.size == 0:
         return int(outcome)
-    floats = floats_at(table[slots.FLOATS], table[slots.FLOATS + 1])
-    integers = integers_at(table[slots.INTEGERS], table[slots.INTEGERS + 1])
-    sweeps = lexicographic(Ay, bounds[0], bounds[1], floats, integers)
-    w, vdot = unpack(floats, integers), out[n : 2 * n]
+    sweeps = lexicographic(Ay, bounds[0], bounds[1], table[slots.SOLVER])
+    w, vdot = work_at(table[slots.SOLVER]), out[n : 2 * n]
     back_substitute(L_inv, w.x, vdot)
     for i in range(m):
         out[2 * n + i] = w.slack[i]

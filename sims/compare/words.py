@@ -133,8 +133,8 @@ def _cost(study: Study) -> str:
     ]
     return (
         "Time without limits, relative to the compiled strict QP, starting cold: "
-        f"{', '.join(ratios)}. That is this implementation (projection in numpy, the "
-        "QP compiled), not the laws' count of operations."
+        f"{', '.join(ratios)}. That is this implementation (plain locking in numpy, "
+        "the others compiled), not the laws' count of operations."
     )
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import chain
 
 import mujoco
@@ -23,9 +24,9 @@ from sims.metrics import Metric
 from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
-from sims.run import run
-from sims.viewer import Viewer, open_viewer
-from wbc import Controller, Solution
+from sims.run import Decision, run
+from sims.view import Display, nearer
+from wbc import Controller
 from wbc.arrays import Array
 
 __all__ = ["DEMO"]
@@ -41,25 +42,28 @@ COLOURS = ("#D55E00", "#009E73", "#CC79A7", "#56B4E9")
 class _Touch:
     """Keeps the true contact force of every tick, and passes the tick on."""
 
-    def __init__(self, window: Viewer | None) -> None:
+    def __init__(self, display: Display) -> None:
         self.force: list[float] = []
-        self._window = window
+        self._display = display
 
-    def __call__(self, cell: Cell, solution: Solution) -> bool:
+    def __call__(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         self.force.append(float(cell.data.sensor("touch").data[0]))
-        return self._window is None or self._window(cell, solution)
+        return self._display(cell, decisions)
 
 
 def _run(options: Options) -> Outcome:
     """Run every case of every family."""
     arm = racer.load("probe")
     cell = constraints.cell(arm, mismatch=options.mismatch, seed=options.seed)
-    window = open_viewer(cell, _camera()) if options.view else None
     trials: dict[str, Trial] = {}
-    for case in chain.from_iterable(family.cases(arm) for family in FAMILIES):
-        trials[case.name] = _try(cell, case, options, window)
-    if window:
-        window.close()
+    close = nearer(_camera(), 1.4, [0.78, 0, 0.6])
+    with Display(view=options.view, video=options.video, camera=close) as display:
+        display.attach(cell)
+        for case in chain.from_iterable(family.cases(arm) for family in FAMILIES):
+            trials[case.name] = display.play(
+                f"constraints: {case.name}",
+                partial(_try, cell, case, options, display),
+            )
     judged = chain.from_iterable(f.metrics(trials, options.mismatch) for f in FAMILIES)
     logs = {name: trial.log for name, trial in trials.items()}
     return Outcome(
@@ -73,7 +77,7 @@ def _run(options: Options) -> Outcome:
     )
 
 
-def _try(cell: ArmCell, case: Case, options: Options, window: Viewer | None) -> Trial:
+def _try(cell: ArmCell, case: Case, options: Options, display: Display) -> Trial:
     off = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     cell.model.opt.disableflags = 0 if case.contact else off
     if case.start is not None:
@@ -83,13 +87,15 @@ def _try(cell: ArmCell, case: Case, options: Options, window: Viewer | None) -> 
     )
     resolver = make()
     stack = case.make(cell.observe().q, cell.data.time)
-    controller = Controller(case.robot or cell.robot, stack[0], resolver)
-    touch = _Touch(window)
+    robot, script = case.robot or cell.robot, stack[1]
+    controller, touch = Controller(robot, stack[0], resolver), _Touch(display)
+    if display.jogger is not None:
+        script = display.jogger.over(stack[0], robot, script, cell.data.time)
     log = run(
         cell,
         controller,
         min(case.duration, options.duration or np.inf),
-        script=stack[1],
+        script=script,
         sites=(TIP,),
         watch=touch,
         label=f"constraints: {case.name}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, final
 
@@ -12,8 +13,9 @@ from sims.constraints.case import limits, rise
 from sims.contact.circle import CircleFit
 from sims.contact.peg import DOWN
 from sims.contact.scene import AXIS, CRANK, LEVER, TIP
+from sims.run import Decision
 from tasks import Damping, ForceLaw, HybridForceMotion
-from wbc import Hierarchy, Solution
+from wbc import Hierarchy
 from wbc.arrays import Array
 
 __all__ = ["Belief", "Turning", "believed_cranks", "handle"]
@@ -111,9 +113,9 @@ class Turning:
         acceleration = r * (dds * along - ds**2 * out)
         self._task.set_target(p, None, r * ds * along, acceleration)
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """The run goes on to its end."""
-        del cell, solution
+        del cell, decisions
         return True
 
     def _learn(self, tip: Array) -> None:

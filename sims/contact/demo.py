@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from functools import partial
 from typing import Final, Protocol
 
 import mujoco
@@ -24,10 +26,10 @@ from sims.log import Log, shared_metrics
 from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import render
 from sims.resolvers import make_resolver
-from sims.run import run
-from sims.viewer import Viewer, open_viewer
+from sims.run import Decision, run
+from sims.view import Display, nearer
 from tasks import FramePose
-from wbc import Controller, Hierarchy, InputError, Robot, Solution, solve_pose
+from wbc import Controller, Hierarchy, InputError, Robot, solve_pose
 from wbc.arrays import Array
 
 __all__ = ["DEMO", "run_jobs"]
@@ -52,7 +54,7 @@ class Phase(Protocol):
     def script(self, t: float) -> None:
         """Move the targets to time t [s]."""
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """False once the phase is over."""
 
 
@@ -63,17 +65,21 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
     """
     arm = racer.load("peg")
     cell = contact.cell(arm, mismatch=options.mismatch, seed=options.seed)
-    window = open_viewer(cell, _camera()) if options.view else None
-    attempts = [
-        _attempt(cell, hole, options, window)
-        for hole in believed_holes(options.seed, pegs)
-    ]
-    turned = [
-        _turn(cell, belief, options, window)
-        for belief in believed_cranks(options.seed, cranks)
-    ]
-    if window:
-        window.close()
+    close = nearer(_camera(), 1.0, [0.82, 0, 0.5])
+    with Display(view=options.view, video=options.video, camera=close) as display:
+        display.attach(cell)
+        attempts = [
+            display.play(
+                f"contact: peg {i}", partial(_attempt, cell, hole, options, display)
+            )
+            for i, hole in enumerate(believed_holes(options.seed, pegs), 1)
+        ]
+        turned = [
+            display.play(
+                f"contact: crank {i}", partial(_turn, cell, belief, options, display)
+            )
+            for i, belief in enumerate(believed_cranks(options.seed, cranks), 1)
+        ]
     logs = _named(attempts, turned)
     simulated = sum(log.t.size for log in logs.values()) * 1e-3
     return Outcome(
@@ -94,39 +100,34 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
     )
 
 
-def _attempt(
-    cell: ArmCell, hole: Array, options: Options, window: Viewer | None
-) -> Attempt:
+def _attempt(cell: ArmCell, hole: Array, options: Options, display: Display) -> Attempt:
     cell.reset(posture_at(cell.robot, hole + ABOVE * UP))
     search = Search(hole)
-    logs = [_run(cell, search, options, window, "search")]
+    logs = [_run(cell, search, options, display, "search")]
     if not search.sunk:
         if options.duration is None:
             sys.stderr.write(f"wbc: {search.report}\n")
         return Attempt(hole, search, None, tuple(logs))
     insertion = Insertion(search.surface)
-    logs.append(_run(cell, insertion, options, window, "insert"))
-    logs.append(_run(cell, Stay(insertion.end), options, window, "stay"))
+    logs.append(_run(cell, insertion, options, display, "insert"))
+    logs.append(_run(cell, Stay(insertion.end), options, display, "stay"))
     return Attempt(hole, search, insertion, tuple(logs))
 
 
-def _turn(
-    cell: ArmCell, belief: Belief, options: Options, window: Viewer | None
-) -> Crank:
+def _turn(cell: ArmCell, belief: Belief, options: Options, display: Display) -> Crank:
     start = handle() - SUNK * UP
     cell.reset(posture_at(cell.robot, start))
     turning = Turning(belief, start)
-    log = _run(cell, turning, options, window, "crank")
+    log = _run(cell, turning, options, display, "crank")
     place = cell.model.jnt_qposadr[cell.model.joint(CRANK_JOINT).id]
     return Crank(turning, log, log.qpos[:, place])
 
 
 def _run(
-    cell: ArmCell, phase: Phase, options: Options, window: Viewer | None, label: str
+    cell: ArmCell, phase: Phase, options: Options, display: Display, label: str
 ) -> Log:
-    def watch(cell: Cell, solution: Solution) -> bool:
-        shown = window is None or window(cell, solution)
-        return shown and phase.watch(cell, solution)
+    def watch(cell: Cell, decisions: Sequence[Decision]) -> bool:
+        return display(cell, decisions) and phase.watch(cell, decisions)
 
     return run(
         cell,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, final
 
 import numpy as np
@@ -10,8 +11,9 @@ from sims.cell import Cell
 from sims.constraints.case import limits
 from sims.contact.scene import HOLE, TIP
 from sims.contact.spiral import Spiral
+from sims.run import Decision
 from tasks import Damping, ForceLaw, FramePose, HybridForceMotion
-from wbc import Hierarchy, Solution
+from wbc import Hierarchy
 from wbc.arrays import Array
 
 __all__ = [
@@ -115,9 +117,9 @@ class Search:
             self._task.set_target(self._hole + offset, None, velocity)
             self.sunk = bool(self._task.position[2] < self.surface - DROP)
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """False once the peg began to sink, or the spiral has become too wide."""
-        del cell, solution
+        del cell, decisions
         return not self.sunk and self._spiral.radius < WIDEST
 
     @property
@@ -172,9 +174,9 @@ class Insertion:
         """Where the tip was at last (3,) [m]."""
         return self._task.position
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """False once the peg is deep enough."""
-        del cell, solution
+        del cell, decisions
         return bool(self._task.position[2] > self._end)
 
 
@@ -199,9 +201,9 @@ class Stay:
     def script(self, t: float) -> None:
         """Nothing moves."""
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """The phase goes on to its end."""
-        del cell, solution
+        del cell, decisions
         return True
 
 

@@ -81,7 +81,7 @@ class ArmView:
     @property
     def truth(self) -> tuple[Array, Array]:
         """Real positions and velocities (n,)."""
-        return self.data.qpos[self.qpos].copy(), self.data.qvel[self.dofs].copy()
+        return self.data.qpos[self.qpos], self.data.qvel[self.dofs]
 
 
 @final

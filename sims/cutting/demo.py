@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from functools import partial
 from typing import get_args
 
 from sims.course import Course
+from sims.cutting.cell import CuttingCell
 from sims.cutting.compared import compared
 from sims.cutting.correction import Experiment
 from sims.cutting.figures import figures
 from sims.cutting.loop import Run, run_job
 from sims.cutting.meat import Meat
 from sims.cutting.metrics import metrics
-from sims.cutting.pictures import camera, describe, picture
+from sims.cutting.pictures import camera, describe, guide_line, picture
 from sims.cutting.playback import replay
 from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
@@ -21,7 +23,7 @@ from sims.demo import Demo, Options, Outcome
 from sims.log import shared_metrics
 from sims.metrics import Metric
 from sims.mismatch import Mismatch
-from sims.viewer import open_viewer
+from sims.view import Display, nearer
 from wbc import UnknownName
 from wbc.arrays import Array
 
@@ -53,20 +55,13 @@ def trial_of(options: Options) -> Trial:
 def _run(options: Options) -> Outcome:
     """Cut one animal apart."""
     trial = trial_of(options)
-    cell, controllers, job = trial.prepare()
-    window = open_viewer(cell, camera()) if options.view else None
-    run = run_job(
-        cell,
-        controllers,
-        job,
-        options.duration or trial.longest,
-        watch=window,
-        quiet=options.quiet,
-    )
-    if window:
-        window.close()
-    if job.stopped is not None:
-        sys.stderr.write(f"wbc: the cut was stopped: {job.stopped}\n")
+    cell = trial.cell()
+    close = nearer(camera(), 1.1, [0.45, 0.20, 0.40])
+    with Display(view=options.view, video=options.video, camera=close) as display:
+        display.attach(cell)
+        run = display.play("cutting", partial(_cut, trial, cell, options, display))
+    if run.job.stopped is not None:
+        sys.stderr.write(f"wbc: the cut was stopped: {run.job.stopped}\n")
     own = metrics(run, trial.experiment, len(trial.plan.depths))
     return Outcome(
         metrics=[*own, *map(_in_time, shared_metrics(run.logs))],
@@ -77,6 +72,13 @@ def _run(options: Options) -> Outcome:
         facts=_facts(run, trial),
         courses={log.robot.name: Course.of(log) for log in run.logs},
     )
+
+
+def _cut(trial: Trial, cell: CuttingCell, options: Options, display: Display) -> Run:
+    controllers, job = trial.start(cell)
+    display.add(partial(guide_line, job, trial.meat))
+    longest = options.duration or trial.longest
+    return run_job(cell, controllers, job, longest, watch=display, quiet=options.quiet)
 
 
 def _in_time(metric: Metric) -> Metric:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import final
-
-import numpy as np
 
 from wbc.arrays import Array
 
@@ -45,8 +44,7 @@ class Guard:
             pull: force along the pull [N].
             due: what it should be [N].
         """
-        behind = float(np.linalg.norm(tip - wanted))
-        force = float(np.linalg.norm(knife[:3]))
+        behind, force = math.dist(tip, wanted), math.hypot(*knife[:3].tolist())
         if self._lasts("lag", t, behind > self.lag):
             return f"knife blocked at {_place(tip)}: {1e3 * behind:.0f} mm behind"
         if self._lasts("cutting", t, force > self.cutting):

@@ -10,7 +10,7 @@ from sims.cutting.cell import CuttingCell
 from sims.cutting.job import Job
 from sims.cutting.record import Record
 from sims.log import Log
-from sims.run import CERTIFY_EVERY, Bar, Watcher, current_probe
+from sims.run import CERTIFY_EVERY, Bar, Decision, Watcher, current_probe
 from wbc import Controller, Solution
 
 __all__ = ["Run", "run_job"]
@@ -81,7 +81,8 @@ def run_job(
                 seen, controllers, solutions, strict=True
             ):
                 probe(tick, controller, solution, view.q, view.v)
-        if watch is not None and not watch(cell, solutions[0]):
+        decisions = list(map(Decision, controllers, seen, solutions))
+        if watch is not None and not watch(cell, decisions):
             break
         if not goes_on:
             break

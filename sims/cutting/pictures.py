@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import html
+from typing import Final
 
 import mujoco
 import numpy as np
 
 from sims.cutting.cell import CuttingCell
+from sims.cutting.job import Job
 from sims.cutting.loop import Run
+from sims.cutting.meat import Meat
 from sims.cutting.metrics import REST
 from sims.report.snapshot import Image, NoDisplay, data_url, render
+from sims.view.marks import TARGET, Mark
+from sims.view.sketches import chain
 
-__all__ = ["camera", "describe", "picture", "snapshots"]
+__all__ = ["camera", "describe", "guide_line", "picture", "snapshots"]
 
 WIDTH, HEIGHT = 480, 320
+POINTS: Final = 40
+"""Of a guide line."""
 
 
 def camera(distance: float = 1.75) -> mujoco.MjvCamera:
@@ -75,6 +82,16 @@ def _contact_sheet(shots: list[tuple[str, str]], columns: int = 3) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img" '
         f'aria-label="The separation in snapshots">{"".join(parts)}</svg>'
     )
+
+
+def guide_line(job: Job, meat: Meat) -> list[Mark]:
+    """The line of the present passage; nothing before the first."""
+    if not job.passages.lines:
+        return []
+    ends = meat.links.ends[0][:, 0]
+    x = np.linspace(ends.min(), ends.max(), POINTS)
+    z = np.full(x.size, job.passages.depth)
+    return chain(np.column_stack([x, job.passages.lines[-1](x), z]), TARGET)
 
 
 def describe(cell: CuttingCell) -> str:

@@ -61,16 +61,28 @@ class Trial:
             return (robot_of(CUTTER, PULLER),)
         return robot_of(CUTTER), robot_of(PULLER)
 
+    def cell(self) -> CuttingCell:
+        """The world, for `start`."""
+        return CuttingCell(
+            scene(self.meat), self.robots(), self._tissue, mismatch=self.mismatch
+        )
+
     def prepare(self) -> tuple[CuttingCell, list[Controller], Job]:
         """Cell, controllers and job, ready to run.
 
         Raises:
             InputError: a passage is out of reach.
         """
-        robots = self.robots()
-        cell = CuttingCell(
-            scene(self.meat), robots, self._tissue, mismatch=self.mismatch
-        )
+        cell = self.cell()
+        return cell, *self.start(cell)
+
+    def start(self, cell: CuttingCell) -> tuple[list[Controller], Job]:
+        """Put a cell of this trial at its beginning: controllers and job for it.
+
+        Raises:
+            InputError: a passage is out of reach.
+        """
+        robots = tuple(view.robot for view in cell.views)
         points = self.meat.links.ends[0]
         check_plan(robots[0], points, self.plan)
         postures = self._postures(points)
@@ -83,11 +95,7 @@ class Trial:
             for robot, hierarchy in zip(robots, made.hierarchies, strict=True)
         ]
         self.camera.reset()
-        return (
-            cell,
-            controllers,
-            Job(cell, made, self.plan, self.camera, self.experiment),
-        )
+        return controllers, Job(cell, made, self.plan, self.camera, self.experiment)
 
     def run(
         self,

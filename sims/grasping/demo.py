@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -22,9 +24,9 @@ from sims.grasping.touch import Touch
 from sims.log import shared_metrics
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
-from sims.run import run
-from sims.viewer import open_viewer
-from wbc import Controller, Robot, Solution
+from sims.run import Decision, run
+from sims.view import Display, nearer
+from wbc import Controller, Robot
 
 __all__ = ["DEMO", "run_cases"]
 
@@ -36,11 +38,15 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
     """Grasp the first `count` cylinders of the seed, one after another."""
     arm = racer.load("gripper")
     results = []
-    for case in seeded_cases(arm, options.seed, count):
-        cell = grasping.cell(
-            arm, case.cylinder, mismatch=options.mismatch, seed=options.seed
-        )
-        results.append(_grasp(arm, cell, case, options))
+    close = nearer(camera(), 1.5, [0.68, 0.06, 0.52])
+    with Display(view=options.view, video=options.video, camera=close) as display:
+        for case in seeded_cases(arm, options.seed, count):
+            cell = grasping.cell(
+                arm, case.cylinder, mismatch=options.mismatch, seed=options.seed
+            )
+            display.attach(cell)
+            job = partial(_grasp, arm, cell, case, options, display)
+            results.append(display.play(f"grasping {case.cylinder.name}", job))
     series = {
         f"{index + 1}/{name}": values
         for index, result in enumerate(results)
@@ -62,17 +68,17 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
     )
 
 
-def _grasp(arm: Robot, cell: ArmCell, case: Case, options: Options) -> Result:
+def _grasp(
+    arm: Robot, cell: ArmCell, case: Case, options: Options, display: Display
+) -> Result:
     cell.reset(case.start)
     job = Job(arm, cell, case.cylinder, GOAL, case.start)
-    window = open_viewer(cell, camera()) if options.view else None
 
     touch = Touch(cell.model)
 
-    def watch(cell: Cell, solution: Solution) -> bool:
+    def watch(cell: Cell, decisions: Sequence[Decision]) -> bool:
         touch.see(cell.data)
-        shown = window is None or window(cell, solution)
-        return shown and job.watch(cell, solution)
+        return display(cell, decisions) and job.watch(cell, decisions)
 
     log = run(
         cell,
@@ -84,8 +90,6 @@ def _grasp(arm: Robot, cell: ArmCell, case: Case, options: Options) -> Result:
         label=f"grasping {case.cylinder.name}",
         quiet=options.quiet,
     )
-    if window:
-        window.close()
     if job.failed and options.duration is None:
         sys.stderr.write(f"wbc: {job.report}\n")
     return Result(job, log, touch)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import final
 
 import numpy as np
@@ -13,7 +14,8 @@ from sims.grasping.motion import Motion, Phase, Straight, Timeline, Transfer
 from sims.grasping.plan import TCP, Plan, make_plan
 from sims.grasping.reach import Reached
 from sims.grasping.rim import RimGrasp
-from wbc import Robot, Solution
+from sims.run import Decision
+from wbc import Robot
 from wbc.arrays import Array
 
 __all__ = ["Job"]
@@ -78,9 +80,9 @@ class Job:
         self.gripper.update()
         self.rim.follow(self.timeline.at(t))
 
-    def watch(self, cell: Cell, solution: Solution) -> bool:
+    def watch(self, cell: Cell, decisions: Sequence[Decision]) -> bool:
         """False once the job is over."""
-        del solution
+        del decisions
         return bool(cell.data.time < self.timeline.duration)
 
     @property

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import mujoco
 import numpy as np
 
@@ -15,7 +17,7 @@ from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import run
-from sims.viewer import Viewer, open_viewer
+from sims.view import Display, nearer
 from sims.welding.figures import figures
 from sims.welding.metrics import metrics
 from sims.welding.parts import TIP, Part, parts
@@ -33,13 +35,14 @@ def _run(options: Options) -> Outcome:
     """Weld a spot, a seam with and without jogging, and a saddle."""
     arm = racer.load()
     cell = welding.cell(arm, mismatch=options.mismatch, seed=options.seed)
-    window = open_viewer(cell, _camera()) if options.view else None
     logs: dict[str, Log] = {}
-    jobs = parts(arm, window.jogger if window else None)
-    for part in jobs:
-        logs[part.name] = _weld(cell, part, options, window)
-    if window:
-        window.close()
+    close = nearer(_camera(), 1.2, [0.78, 0.06, 0.50])
+    with Display(view=options.view, video=options.video, camera=close) as display:
+        display.attach(cell)
+        for part in parts(arm, display.jogger):
+            logs[part.name] = display.play(
+                f"welding: {part.name}", partial(_weld, cell, part, options, display)
+            )
     series = {
         f"{part}/{name}": values
         for part, log in logs.items()
@@ -60,7 +63,7 @@ def _run(options: Options) -> Outcome:
     )
 
 
-def _weld(cell: ArmCell, part: Part, options: Options, window: Viewer | None) -> Log:
+def _weld(cell: ArmCell, part: Part, options: Options, display: Display) -> Log:
     cell.reset(part.start)
     controller = Controller(cell.robot, part.hierarchy, make_resolver(options.resolver))
     duration = min(part.duration, options.duration or np.inf)
@@ -70,7 +73,7 @@ def _weld(cell: ArmCell, part: Part, options: Options, window: Viewer | None) ->
         duration,
         script=part.script,
         sites=(TIP,),
-        watch=window,
+        watch=display,
         label=f"welding: {part.name}",
         quiet=options.quiet,
     )

@@ -9,7 +9,7 @@ from typing import final
 import numpy as np
 
 from sims.settle import settle
-from sims.viewer import Jogger
+from sims.view.jogger import Jogger
 from sims.welding.jog import Jog
 from sims.welding.workpiece import CURVE, CURVE_WORK, POINT, SEAM, SEAM_AXIS, start_of
 from tasks import (

@@ -97,7 +97,7 @@ def semi_implicit(
     if gap < 0.0:
         after = _way_back(gap, V)
     else:
-        after = min(V, -stop * dt + np.sqrt((stop * dt) ** 2 + 2.0 * stop * gap))
+        after = min(V, -stop * dt + np.sqrt(stop * dt * stop * dt + 2.0 * stop * gap))
     return min(max((after - v) / dt, -A), A)
 
 

@@ -61,7 +61,7 @@ def write_point(table: Array, s: float, out: Array) -> None:
         return
     pieces = int(table[2])
     inside = min(max(s, 0.0), table[1])
-    i = np.searchsorted(table[HEADER : HEADER + pieces], inside, side="right") - 1
+    i = _piece(table, pieces, inside)
     x = inside - table[HEADER + i]
     begin = HEADER + pieces + 54 * i
     for column in range(9):
@@ -108,6 +108,19 @@ def locate(table: Array, p: Array, point: Array) -> float:
         if abs(step) < CONVERGED:
             break
     return s
+
+
+@inner
+def _piece(table: Array, pieces: int, s: float) -> int:
+    """Number of the last piece that begins at or before s; by halves."""
+    first, end = 0, pieces
+    while end - first > 1:
+        middle = (first + end) // 2
+        if table[HEADER + middle] <= s:
+            first = middle
+        else:
+            end = middle
+    return first
 
 
 @inner

@@ -68,6 +68,42 @@ def test_rocking_still_holds_the_flat_of_the_blade():
         assert np.linalg.norm(rows.error[3:]) == pytest.approx(0.2)
 
 
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        ({"position": [0.0, 0.0]}, r"target position .* shape \(2,\)"),
+        ({"orientation": np.ones(9)}, r"target orientation .* shape \(9,\)"),
+        ({"twist": np.zeros(3)}, r"target twist .* shape \(3,\)"),
+        ({"acceleration": [1.0]}, r"target acceleration .* shape \(1,\)"),
+        ({"position": [0.0, np.nan, 0.0]}, "must be finite"),
+        ({"orientation": np.full((3, 3), np.inf)}, "must be finite"),
+        ({"twist": np.full(6, np.nan)}, "must be finite"),
+        ({"acceleration": np.full(6, np.inf)}, "must be finite"),
+        ({"orientation": 1.1 * np.eye(3)}, "no rotation"),
+        ({"orientation": np.diag([1.0, 1.0, -1.0])}, "no rotation"),
+        ({"orientation": np.zeros((3, 3))}, "no rotation"),
+        ({"position": ["a", 0, 0]}, "must be numbers"),
+    ],
+)
+def test_an_unusable_target_is_refused_and_the_old_one_stays(part, message):
+    p, R = target()
+    task, fresh = KnifePose(TIP, p, R), KnifePose(TIP, p, R)
+    with pytest.raises(InputError, match=message):
+        task.set_target(**({"position": p + 1.0, "orientation": np.eye(3)} | part))
+    before, after = (resolve(state(), t >> Posture()).torque for t in (fresh, task))
+    assert_allclose(after, before, rtol=0, atol=0)
+
+
+def test_a_target_may_come_in_any_layout_and_type():
+    p, R = target()
+    task, other = KnifePose(TIP, p, R), KnifePose(TIP, p, np.eye(3))
+    frozen = np.asfortranarray(R)
+    frozen.flags.writeable = False
+    other.set_target(tuple(p), frozen, [0] * 6)
+    given, taken = (resolve(state(), t >> Posture()).torque for t in (task, other))
+    assert_allclose(taken, given, rtol=0, atol=0)
+
+
 def test_a_missing_sensor_is_named():
     task = KnifePose(TIP, *target(), sensor="wirst", sensor_frame=SENSOR)
     with pytest.raises(UnknownName, match="Valid names: wrist"):

@@ -72,9 +72,10 @@ def test_a_bound_of_one_under_a_target_of_three_costs_two_per_unit():
 
 def test_its_table_says_so():
     assert str(explained(at_most(1.0) >> want(3.0))).splitlines() == [
-        "level  task  met  error  missing        blocked by (relief)",
+        "level  task  met  error  gets                   blocked by (relief)",
         "1      cap   yes",
-        "2      goal  NO          goal 0 2 of 3  1 cap/cap 0 at upper (1 per unit)",
+        "2      goal  NO          goal 0 1 instead of 3  "
+        "1 cap/cap 0 at upper (1 per unit)",
         "",
         "why",
         "  goal: active bounds above leave no more",
@@ -233,7 +234,7 @@ def test_a_stretched_arm_is_blocked_by_nothing_but_itself():
     assert task.missing == pytest.approx([0.0, 0.0, 20.0], abs=BY_HAND)
     assert task.lost == pytest.approx(20.0)
     assert "the robot itself cannot move that way here" in str(explanation)
-    assert "NO   0.2 m     z 20 of 20 m/s^2" in str(explanation)
+    assert "NO   0.2 m     z 0 instead of 20 m/s^2" in str(explanation)
 
 
 def test_a_task_that_contradicts_itself_is_lost_to_no_one_else():
@@ -344,8 +345,8 @@ def test_the_worst_row_comes_first_and_a_long_list_is_cut_short():
     top = RawRows("top", np.eye(N), np.zeros(N))
     goal = RawRows("goal", np.eye(N), np.arange(1.0, N + 1))
     lines = str(explained(top >> goal)).splitlines()
-    assert "goal 6 7 of 7" in lines[2]
-    assert "goal 5 6 of 6" in lines[3]
+    assert "goal 6 0 instead of 7" in lines[2]
+    assert "goal 5 0 instead of 6" in lines[3]
     assert lines[5].split() == ["and", "4", "more", "and", "4", "more"]
     assert len(explained(top >> goal).blocked("goal")) == N
 

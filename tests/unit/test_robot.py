@@ -671,6 +671,27 @@ def test_the_drift_of_a_frame_is_its_acceleration_without_joint_acceleration():
     assert_allclose((ahead - behind) / (2 * h), drift, atol=1e-7)
 
 
+def test_parts_of_a_frame_may_be_asked_for_alone_and_first():
+    robot, q, v = load(), [0.3, -0.4], [1.0, -2.0]
+    whole = robot.state(q, v).frame("tip")
+    assert_array_equal(robot.state(q, v).position("tip"), whole.p)
+    assert_array_equal(robot.state(q, v).jacobian("tip"), whole.J)
+    for ask in (State.position, State.jacobian):
+        with pytest.raises(UnknownName, match="tpi"):
+            ask(robot.state(q, v), "tpi")
+
+
+def test_a_part_of_a_frame_that_was_asked_for_stays_as_it_was():
+    robot = load()
+    state = robot.state([0.3, -0.4])
+    p, J = state.position("tip"), state.jacobian("tip")
+    before = p.copy(), J.copy()
+    state.refresh(np.array([1.0, 1.0]), np.zeros(2), 0.0)
+    assert np.abs(state.position("tip") - p).max() > 0.1
+    assert_array_equal(p, before[0])
+    assert_array_equal(J, before[1])
+
+
 def test_the_bias_at_rest_is_gravity():
     state: State = load().state([0.3, -0.4])
     assert_allclose(state.h, state.gravity(), atol=1e-12)

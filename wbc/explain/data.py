@@ -23,7 +23,7 @@ Reason: TypeAlias = Literal["bounds", "tasks", "conflict", "lost", "resolver"]
 
 WORDS: dict[Reason, str] = {
     "bounds": "active bounds above leave no more",
-    "tasks": "tasks of higher levels need the motion that it wants",
+    "tasks": "tasks of higher levels take the freedom that it needs",
     "conflict": "tasks of its own level want something else",
     "lost": (
         "the robot itself cannot move that way here: it is singular, or the task's "

@@ -21,7 +21,7 @@ SHOWN = 3
 
 def table(tasks: tuple[TaskExplanation, ...]) -> Iterator[str]:
     """One line a task, more where several rows miss or several rows block."""
-    cells = [("level", "task", "met", "error", "missing", "blocked by (relief)")]
+    cells = [("level", "task", "met", "error", "gets", "blocked by (relief)")]
     for task in tasks:
         error = "" if task.error is None else _with(task.error, task.error_unit)
         first = (str(task.level), task.name, "yes" if task.met else "NO", error)
@@ -45,13 +45,15 @@ def _first(texts: list[str]) -> list[str]:
 
 
 def _missing(task: TaskExplanation) -> list[str]:
-    """What is missing of what, the worst row first; the round-off of others is not."""
+    """What it gets instead of what, the worst row first; not those of round-off."""
     if task.met:
         return []
     size = np.abs(task.missing)
     worst = np.argsort(-size, kind="stable")
+    got = task.wanted - task.missing
+    got[np.abs(got) < NEGLIGIBLE * size] = 0.0
     return [
-        f"{task.rows[i]} {_with(task.missing[i], '')} of "
+        f"{task.rows[i]} {_with(got[i], '')} instead of "
         f"{_with(task.wanted[i], task.units[i])}"
         for i in worst
         if size[i] > NEGLIGIBLE * size[worst[0]]

@@ -12,7 +12,6 @@ and the sweeps are exact however singular a level is.
 
 from __future__ import annotations
 
-from wbc.arrays import Array
 from wbc.compiled import inner
 from wbc.lexicographic.multipliers import ROUND_OFF, multipliers, slack_floor
 from wbc.lexicographic.sweep import sweep
@@ -26,9 +25,7 @@ PATIENCE = 8
 
 
 @inner
-def descend(
-    A: Array, lower: Array, upper: Array, w: Work, tolerance: float, most: int
-) -> int:
+def descend(w: Work, most: int) -> int:
     """Solve from the origin with an empty working set.
 
     Returns:
@@ -44,24 +41,24 @@ def descend(
     for k in range(p + 1):
         w.released[:] = 0
         if k < p:
-            _hold_violated(A, lower, upper, w, k)
+            _hold_violated(w, k)
             dirty = min(dirty, k)
         while True:
             sweeps += 1
             if sweeps > most:
                 return -sweeps
-            _aim(w, sweep(A, lower, upper, w, tolerance, dirty, min(k + 1, p)), k == p)
+            _aim(w, sweep(w, dirty, min(k + 1, p)), k == p)
             dirty = min(k + 1, p)
-            if gone >= 0 and _still_out(A, lower, upper, w, gone, was):
+            if gone >= 0 and _still_out(w, gone, was):
                 w.fixed[gone], side[gone] = 1, was
                 dirty, gone = w.level[gone], -1
                 continue
-            row, new, step = _first_event(A, lower, upper, w, k)
+            row, new, step = _first_event(w, k)
             for j in range(x.size):
                 x[j] += step * (w.target[j] - x[j])
             gone = -1
             if row < 0:
-                gone = row = _settle(A, w, k)
+                gone = row = _settle(w, k)
                 if row < 0:
                     break
                 was = side[row]
@@ -71,26 +68,25 @@ def descend(
 
 
 @inner
-def _still_out(
-    A: Array, lower: Array, upper: Array, w: Work, row: int, side: int
-) -> bool:
+def _still_out(w: Work, row: int, side: int) -> bool:
     """Whether a row just let go heads straight out: its push was within round-off."""
-    value = dot(A[row], w.target, 0, w.x.size)
-    out = value - upper[row] if side == 1 else lower[row] - value
+    value = dot(w.A[row], w.target, 0, w.x.size)
+    out = value - w.upper[row] if side == 1 else w.lower[row] - value
     return bool(out > ROUND_OFF * w.size[row] * (1.0 + length(w.target)))
 
 
 @inner
-def _hold_violated(A: Array, lower: Array, upper: Array, w: Work, k: int) -> None:
+def _hold_violated(w: Work, k: int) -> None:
     """The level's rows that x violates join the working set."""
-    reach = ROUND_OFF * (1.0 + length(w.x))
+    side, size, x = w.side, w.size, w.x
+    reach = ROUND_OFF * (1.0 + length(x))
     for r in range(w.start[k], w.start[k + 1]):
-        if w.side[r] == 0 and w.size[r] > 0.0:
-            value = dot(A[r], w.x, 0, w.x.size)
-            if value - upper[r] > reach * w.size[r]:
-                w.side[r] = 1
-            elif lower[r] - value > reach * w.size[r]:
-                w.side[r] = -1
+        if side[r] == 0 and size[r] > 0.0:
+            value = dot(w.A[r], x, 0, x.size)
+            if value - w.upper[r] > reach * size[r]:
+                side[r] = 1
+            elif w.lower[r] - value > reach * size[r]:
+                side[r] = -1
 
 
 @inner
@@ -106,12 +102,11 @@ def _aim(w: Work, taken: int, least_norm: bool) -> None:
 
 
 @inner
-def _first_event(
-    A: Array, lower: Array, upper: Array, w: Work, k: int
-) -> tuple[int, int, float]:
+def _first_event(w: Work, k: int) -> tuple[int, int, float]:
     """What happens first on the way to the target: (row, its new side, step)."""
     start, side, fixed, size, slack = w.start, w.side, w.fixed, w.size, w.slack
-    x, target, n, p = w.x, w.target, w.x.size, w.count.size
+    A, lower, upper, x, target = w.A, w.lower, w.upper, w.x, w.target
+    n, p = x.size, w.count.size
     step, row, new = 1.0, -1, 0
     reach = ROUND_OFF * (1.0 + length(x))
     for r in range(start[min(k + 1, p)]):
@@ -138,12 +133,12 @@ def _first_event(
 
 
 @inner
-def _settle(A: Array, w: Work, k: int) -> int:
+def _settle(w: Work, k: int) -> int:
     """The held bound that pulls most; where none does, those that push stay: -1."""
     start, count, order, side = w.start, w.count, w.order, w.side
     fixed, multiplier, size, released = w.fixed, w.multiplier, w.size, w.released
     reach = 1.0 + length(w.x)
-    worst, row = multipliers(A, w, k, reach), -1
+    worst, row = multipliers(w, k, reach), -1
     floor = worst
     if floor >= 0.0:
         for j in range(k):

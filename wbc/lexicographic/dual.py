@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from wbc.arrays import Array
 from wbc.compiled import inner
 from wbc.lexicographic.moves import along, make_basis, move
 from wbc.lexicographic.sweep import factorise, resolve, take_point, working_rows
@@ -44,21 +43,20 @@ MET = 1e-6
 
 
 @inner
-def climb(
-    A: Array, lower: Array, upper: Array, w: Work, d: Dual, tolerance: float, most: int
-) -> int:
+def climb(w: Work, d: Dual, most: int) -> int:
     """Find a working set from nothing.
 
     Returns:
         the steps it took; negative if `most` were not enough.
     """
     side, order, taken, steps = w.side, w.order, 0, 0
+    tolerance = w.tolerance[0]
     for r in range(side.size):
         side[r] = side[r] if side[r] == 2 else 0
     for k in range(w.count.size):
         count, lost = working_rows(w, k), tolerance * w.scale[k]
         own = order[w.start[k] : w.start[k] + count]
-        rank = resolve(A, lower, upper, w, own, taken, lost)
+        rank = resolve(w, own, taken, lost)
         take_point(w, d.point, taken + rank)
         price = _price(w, k)
         d.held[:] = 0
@@ -66,7 +64,7 @@ def climb(
         d.number[:] = 0
         based = False
         while True:
-            row, sign = _most_violated(A, lower, upper, w, d, k)
+            row, sign = _most_violated(w, d, k)
             if row < 0:
                 break
             if rank == own.size and d.number[0] == 0:
@@ -81,16 +79,16 @@ def climb(
                 if steps > most:
                     return -steps
                 if not d.known[row]:
-                    move(A, w, d, row, taken, rank, price)
-                left = _direction(A, w, d, row, sign, soft)
-                bound = upper[row] if sign > 0 else lower[row]
-                _step(A, w, d, row, sign, soft, bound, left)
+                    move(w, d, row, taken, rank, price)
+                left = _direction(w, d, row, sign, soft)
+                bound = w.upper[row] if sign > 0 else w.lower[row]
+                _step(w, d, row, sign, soft, bound, left)
         pushing, broken = _fix(w, d, k, price)
         if pushing + broken > 0 and k + 1 < w.count.size:
             rows = d.pushing[:pushing]
-            taken += resolve(A, lower, upper, w, rows, taken, 0.0)
+            taken += resolve(w, rows, taken, 0.0)
             own = order[w.start[k] : w.start[k] + working_rows(w, k)]
-            rank = resolve(A, lower, upper, w, own, taken, lost)
+            rank = resolve(w, own, taken, lost)
         taken += rank
     for r in d.chosen[: d.number[0]]:
         side[r] = d.held[r]
@@ -106,19 +104,18 @@ def _price(w: Work, k: int) -> float:
             least = size
     if least == np.inf:
         return 0.0
-    return float(max(THRIFT * least**2, CHEAPEST * w.scale[k] ** 2))
+    return float(max(THRIFT * least * least, CHEAPEST * w.scale[k] * w.scale[k]))
 
 
 @inner
-def _most_violated(
-    A: Array, lower: Array, upper: Array, w: Work, d: Dual, k: int
-) -> tuple[int, int]:
+def _most_violated(w: Work, d: Dual, k: int) -> tuple[int, int]:
     """The row of levels up to k that is furthest out, and on which side."""
     side, size, held, point = w.side, w.size, d.held, d.point
+    lower, upper = w.lower, w.upper
     worst, row, sign = FEASIBILITY * (1.0 + length(d.point)), -1, 0
     for r in range(w.start[k + 1]):
         if side[r] == 0 and held[r] == 0 and size[r] > 0.0:
-            value = along(A, d, r, point)
+            value = along(w, d, r, point)
             out = max(value - upper[r], lower[r] - value)
             if out > worst * size[r]:
                 worst, row = out / size[r], r
@@ -127,7 +124,7 @@ def _most_violated(
 
 
 @inner
-def _direction(A: Array, w: Work, d: Dual, row: int, sign: int, soft: float) -> float:
+def _direction(w: Work, d: Dual, row: int, sign: int, soft: float) -> float:
     """Where x goes and what those held lose when the row is pulled.
 
     Returns:
@@ -136,10 +133,10 @@ def _direction(A: Array, w: Work, d: Dual, row: int, sign: int, soft: float) -> 
     P, L, held, rate, way = d.P, d.L, d.held, d.rate, d.way
     n, count, chosen = w.x.size, d.number[0], d.chosen
     new = L[count]
-    whole = left = along(A, d, row, P[row]) + soft
+    whole = left = along(w, d, row, P[row]) + soft
     for i in range(count):
         r = chosen[i]
-        share = sign * held[r] * along(A, d, r, P[row])
+        share = sign * held[r] * along(w, d, r, P[row])
         new[i] = (share - dot(L[i], new, 0, i)) / L[i, i]
         left -= new[i] * new[i]
     copy(new[:count], rate)
@@ -154,7 +151,6 @@ def _direction(A: Array, w: Work, d: Dual, row: int, sign: int, soft: float) -> 
 
 @inner
 def _step(
-    A: Array,
     w: Work,
     d: Dual,
     row: int,
@@ -173,7 +169,7 @@ def _step(
     )
     count, size, gone, step = d.number[0], w.size, -1, np.inf
     if left > 0.0:
-        value = along(A, d, row, point)
+        value = along(w, d, row, point)
         step = max(sign * (value - bound) - soft * multiplier[row], 0.0) / left
     for i in range(count):
         r = chosen[i]

@@ -16,29 +16,27 @@ __all__ = ["along", "make_basis", "move"]
 
 
 @inner
-def along(A: Array, d: Dual, row: int, x: Array) -> float:
+def along(w: Work, d: Dual, row: int, x: Array) -> float:
     """The row times x (n,)."""
-    j = d.column[row]
+    A, j = w.A, d.column[row]
     return float(A[row, j] * x[j]) if j >= 0 else dot(A[row], x, 0, x.size)
 
 
 @inner
-def move(
-    A: Array, w: Work, d: Dual, row: int, base: int, rank: int, price: float
-) -> None:
+def move(w: Work, d: Dual, row: int, base: int, rank: int, price: float) -> None:
     """How x answers to a unit force along the row, in the metric of the level."""
     P, n = d.P[row], w.x.size
     d.known[row] = 1
     if base + rank == n:
         y = w.pull[:rank]
         for j in range(rank):
-            y[j] = along(A, d, row, d.Z[base + j])
+            y[j] = along(w, d, row, d.Z[base + j])
         _apply_metric(w.factor, y, price)
         P[:] = 0.0
         for j in range(rank):
             add_scaled(y[j], d.Z[base + j], P, 0, n)
         return
-    copy(A[row], P)
+    copy(w.A[row], P)
     reflect(P, w.V, w.beta, base + rank)
     P[:base] = 0.0
     _apply_metric(w.factor, P[base : base + rank], price)
@@ -48,12 +46,12 @@ def move(
 @inner
 def make_basis(w: Work, d: Dual, base: int) -> None:
     """The last columns of Q, where the level determines all that was left."""
-    n = w.x.size
+    V, beta, Z, n = w.V, w.beta, d.Z, w.x.size
     for j in range(base, n):
-        column = d.Z[j]
+        column = Z[j]
         for i in range(n):
             column[i] = 1.0 if i == j else 0.0
-        reflect_back(column, w.V, w.beta, n)
+        reflect_back(column, V, beta, j + 1)  # the others leave it as it is
 
 
 @inner

@@ -29,13 +29,14 @@ ROUND_OFF = 1e-12
 
 
 @inner
-def fault(A: Array, lower: Array, upper: Array, w: Work) -> tuple[int, int]:
+def fault(w: Work) -> tuple[int, int]:
     """The worst fault of the highest level that has one: (row, its right side).
 
     Returns:
         (-1, 0) for an optimal working set.
     """
-    start, side, size, x = w.start, w.side, w.size, w.x
+    A, lower, upper, x = w.A, w.lower, w.upper, w.x
+    start, side, size = w.start, w.side, w.size
     n, reach, held = x.size, length(x), False
     for k in range(w.count.size):
         worst, row, right = FEASIBILITY + ROUND_OFF * reach, -1, 0
@@ -50,11 +51,11 @@ def fault(A: Array, lower: Array, upper: Array, w: Work) -> tuple[int, int]:
                 held = True
         if row >= 0:
             return row, right
-    return (_puller(A, w, 1.0 + reach) if held else -1), 0
+    return (_puller(w, 1.0 + reach) if held else -1), 0
 
 
 @inner
-def _puller(A: Array, w: Work, reach: float) -> int:
+def _puller(w: Work, reach: float) -> int:
     """The held bound that pulls most in the first level where one does; -1 if none."""
     side, fixed, p = w.side, w.fixed, w.count.size
     for r in range(side.size):
@@ -62,7 +63,7 @@ def _puller(A: Array, w: Work, reach: float) -> int:
     for k in range(p + 1):
         row = _against_slack(w, k, reach) if k < p else -1
         if row < 0:
-            floor = multipliers(A, w, k, reach)
+            floor = multipliers(w, k, reach)
             row = _against_multiplier(w, k, floor) if floor >= 0.0 else -1
         if row >= 0:
             return row
@@ -106,7 +107,7 @@ def slack_floor(w: Work, k: int, reach: float) -> float:
 
 
 @inner
-def multipliers(A: Array, w: Work, k: int, reach: float) -> float:
+def multipliers(w: Work, k: int, reach: float) -> float:
     """Multipliers of the rows above level k for its force A_k^T s_k.
 
     k = p asks for the wish for least norm, -x, below all levels.
@@ -115,7 +116,7 @@ def multipliers(A: Array, w: Work, k: int, reach: float) -> float:
         the force below which a row has no sign; negative where all are round-off.
     """
     start, first, count, order = w.start, w.first, w.count, w.order
-    W, pull, multiplier = w.W, w.pull, w.multiplier
+    A, W, pull, multiplier, slack = w.A, w.W, w.pull, w.multiplier, w.slack
     p = count.size
     taken = first[min(k, p)]
     for j in range(taken):
@@ -127,10 +128,10 @@ def multipliers(A: Array, w: Work, k: int, reach: float) -> float:
         if columns:
             pull[:] = 0.0
         for r in rows:
-            if w.slack[r] != 0.0 and columns:
-                add_scaled(w.slack[r], A[r], pull, 0, pull.size)
-            elif w.slack[r] != 0.0:
-                add_scaled(w.slack[r], W[r], pull, 0, taken)
+            if slack[r] != 0.0 and columns:
+                add_scaled(slack[r], A[r], pull, 0, pull.size)
+            elif slack[r] != 0.0:
+                add_scaled(slack[r], W[r], pull, 0, taken)
         if columns:
             reflect(pull, w.V, w.beta, taken)
         # Directions that the level has lost still pull, by their singular value.

@@ -16,13 +16,13 @@ from wbc.lexicographic.sweep import sweep, take_point
 from wbc.lexicographic.vectors import copy, dot, length
 from wbc.lexicographic.work import (
     MOST,
-    SOLVED,
-    TOLERANCE,
+    SETTLED,
     Dual,
     Memory,
     Work,
-    unpack,
-    unpack_dual,
+    dual_at,
+    set_problem,
+    work_at,
 )
 from wbc.linalg import RANK_TOLERANCE
 
@@ -58,7 +58,7 @@ class Lexicographic:
         slack: (m,) bound - a x of the rows of its working set, 0 for the others.
         side: (m,) its working set: 1 at upper, -1 at lower, 2 equality, 0 free.
         sweeps: how many sweeps and steps it took.
-        floats, integers: its memory, for compiled code.
+        address: of its memory, for compiled code.
     """
 
     def __init__(
@@ -68,24 +68,25 @@ class Lexicographic:
         tolerance: float = RANK_TOLERANCE,
         most: int | None = None,
     ) -> None:
-        memory = Memory(sizes, n)
-        self.floats, self.integers = memory.floats, memory.integers
-        self._work = memory.views
-        self.floats[TOLERANCE] = tolerance
-        self.integers[MOST] = 50 + 20 * (int(sum(sizes)) + n) if most is None else most
-        self.x, self.side = self._work.x, self._work.side
-        self.slack = self._work.slack
+        self._memory = Memory(sizes, n)
+        self.address, memory = self._memory.address, self._memory
+        memory["tolerance"][0] = tolerance
+        many = 50 + 20 * (int(sum(sizes)) + n)
+        self._options, self._first = memory["options"], memory["first"]
+        self._options[MOST] = many if most is None else most
+        self.x, self.side, self.slack = memory["x"], memory["side"], memory["slack"]
         self.sweeps = 0
 
     @property
     def ranks(self) -> IntArray:
         """For each level (p,), how many coordinates it took."""
-        first = self._work.first
-        return first[1:] - first[:-1]
+        first = self._first
+        ranks: IntArray = first[1:] - first[:-1]
+        return ranks
 
     def reset(self) -> None:
         """Forget the working set."""
-        self.integers[SOLVED] = 0
+        self._options[SETTLED] = 0
 
     def solve(self, A: Array, lower: Array, upper: Array) -> bool:
         """Solve; whether an optimal working set was found within the iterations.
@@ -100,50 +101,51 @@ class Lexicographic:
         """
         if self.sweeps == 0:
             announce(lexicographic, "the solver")
-        self.sweeps = lexicographic(A, lower, upper, self.floats, self.integers)
+        self.sweeps = lexicographic(A, lower, upper, self.address)
         return self.sweeps > 0
 
 
 @compiled
-def lexicographic(
-    A: Array, lower: Array, upper: Array, floats: Array, integers: IntArray
-) -> int:
+def lexicographic(A: Array, lower: Array, upper: Array, address: int) -> int:
     """Try the last working set, then one from nothing; steps, negative on failure.
 
-    Arguments as for `Lexicographic.solve`, and the arrays of its `Memory`.
+    Arguments as for `Lexicographic.solve`, and the address of its `Memory`.
     """
-    w, tolerance, most = unpack(floats, integers), floats[TOLERANCE], integers[MOST]
-    unbounded = _prepare(A, lower, upper, w, tolerance)
-    steps, left = 0, GUESSES if unbounded or integers[SOLVED] else 0
-    integers[SOLVED] = 0
+    w, d = work_at(address), dual_at(address)
+    set_problem(w, A, lower, upper)
+    most, unbounded = w.options[MOST], _prepare(w)
+    steps, left = 0, GUESSES if unbounded or w.options[SETTLED] else 0
+    w.options[SETTLED] = 0
     for stage in range(3):
         if stage > 0:
-            d, left = unpack_dual(floats, integers), CORRECTIONS
+            left = CORRECTIONS
             w.stuck[:] = 0
             if stage == 1:
-                _find_plain(A, d)
-                taken = climb(A, lower, upper, w, d, tolerance, most)
+                _find_plain(w, d)
+                taken = climb(w, d, most)
             else:
-                taken = descend(A, lower, upper, w, tolerance, most)
+                taken = descend(w, most)
                 copy(w.x, d.point)
             steps += abs(taken)
             if taken < 0:
                 continue
-        taken = _correct(A, lower, upper, w, tolerance, left)
+        taken = _correct(w, left)
         steps += abs(taken)
         if taken > 0:
-            _report(A, lower, upper, w, False)
-            integers[SOLVED] = 1
+            _report(w, False)
+            w.options[SETTLED] = 1
             return steps
-    copy(unpack_dual(floats, integers).point, w.x)
-    _report(A, lower, upper, w, True)
+    copy(d.point, w.x)
+    _report(w, True)
     return -steps
 
 
 @inner
-def _prepare(A: Array, lower: Array, upper: Array, w: Work, tolerance: float) -> bool:
+def _prepare(w: Work) -> bool:
     """Norms; sides that the present bounds allow. Are there but equalities?"""
+    A, lower, upper = w.A, w.lower, w.upper
     side, size, start, n, unbounded = w.side, w.size, w.start, w.x.size, True
+    tolerance = w.tolerance[0]
     for k in range(w.count.size):
         square = 0.0
         for r in range(start[k], start[k + 1]):
@@ -165,32 +167,31 @@ def _prepare(A: Array, lower: Array, upper: Array, w: Work, tolerance: float) ->
 
 
 @inner
-def _find_plain(A: Array, d: Dual) -> None:
+def _find_plain(w: Work, d: Dual) -> None:
     """Which rows have a single coefficient, and where."""
-    for r in range(A.shape[0]):
-        d.column[r] = -1
-        for j in range(A.shape[1]):
+    A, column = w.A, d.column
+    for r in range(column.size):
+        column[r] = -1
+        for j in range(w.x.size):
             if A[r, j] != 0.0:
-                if d.column[r] >= 0:
-                    d.column[r] = -1
+                if column[r] >= 0:
+                    column[r] = -1
                     break
-                d.column[r] = j
+                column[r] = j
 
 
 @inner
-def _correct(
-    A: Array, lower: Array, upper: Array, w: Work, tolerance: float, most: int
-) -> int:
+def _correct(w: Work, most: int) -> int:
     """Sweep and mend the worst fault until there is none; negative if `most` fail."""
     p, x, side, dirty, gone, was = w.count.size, w.x, w.side, 0, -1, 0
     for count in range(most):
-        take_point(w, x, sweep(A, lower, upper, w, tolerance, dirty, p))
-        row, right = fault(A, lower, upper, w)
+        take_point(w, x, sweep(w, dirty, p))
+        row, right = fault(w)
         if row < 0:
             return count + 1
         if gone >= 0:
-            value = dot(A[gone], x, 0, x.size)
-            out = value - upper[gone] if was == 1 else lower[gone] - value
+            value = dot(w.A[gone], x, 0, x.size)
+            out = value - w.upper[gone] if was == 1 else w.lower[gone] - value
             if out > ROUND_OFF * w.size[gone] * (1.0 + length(x)):
                 row, right, w.stuck[gone] = gone, was, 1
         gone, was = row if right == 0 else -1, side[row]
@@ -199,12 +200,12 @@ def _correct(
 
 
 @inner
-def _report(A: Array, lower: Array, upper: Array, w: Work, everything: bool) -> None:
+def _report(w: Work, everything: bool) -> None:
     """Slack and side of rows that count as zero, or of all: as x leaves them."""
     side, slack = w.side, w.slack
     for r in range(side.size):
         if everything or w.size[r] == 0.0:
-            value = dot(A[r], w.x, 0, w.x.size)
-            slack[r] = min(max(value, lower[r]), upper[r]) - value
+            value = dot(w.A[r], w.x, 0, w.x.size)
+            slack[r] = min(max(value, w.lower[r]), w.upper[r]) - value
             if w.size[r] == 0.0 and side[r] != 2:
                 side[r] = 1 if slack[r] < 0.0 else -1 if slack[r] > 0.0 else 0

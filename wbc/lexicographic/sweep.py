@@ -13,7 +13,14 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, copy, dot, reflect, reflect_back
+from wbc.lexicographic.vectors import (
+    add_scaled,
+    copy,
+    dot,
+    fours,
+    reflect,
+    reflect_back,
+)
 from wbc.lexicographic.work import Work
 
 __all__ = ["factorise", "few_left", "resolve", "sweep", "take_point", "working_rows"]
@@ -25,12 +32,10 @@ FEW = 4
 
 
 @inner
-def sweep(
-    A: Array, lower: Array, upper: Array, w: Work, tolerance: float, k0: int, k1: int
-) -> int:
+def sweep(w: Work, k0: int, k1: int) -> int:
     """Resolve levels k0..k1-1 of the working set; those before k0 must be resolved.
 
-    A level's direction counts if it keeps more than `tolerance` of the norm of the
+    A level's direction counts if it keeps more than the tolerance of the norm of its
     level.
 
     Returns:
@@ -40,9 +45,9 @@ def sweep(
     for k in range(k0, k1):
         w.count[k] = working_rows(w, k)
         rows = w.order[w.start[k] : w.start[k] + w.count[k]]
-        rank = resolve(A, lower, upper, w, rows, taken, tolerance * w.scale[k])
+        rank = resolve(w, rows, taken, w.tolerance[0] * w.scale[k])
         if few_left(w, rows.size, taken):
-            _complete(A, w, rows[:rank], taken)
+            _complete(w, rows[:rank], taken)
         taken += rank
         w.first[k + 1] = taken
     return int(taken)
@@ -71,9 +76,6 @@ def take_point(w: Work, x: Array, taken: int) -> None:
 
 @inner
 def resolve(
-    A: Array,
-    lower: Array,
-    upper: Array,
     w: Work,
     rows: IntArray,
     taken: int,
@@ -87,13 +89,14 @@ def resolve(
     Returns:
         how many coordinates they take.
     """
-    W, c, slack, rest = w.W, w.c, w.slack, w.rest
+    W, c, slack, rest, side = w.W, w.c, w.slack, w.rest, w.side
+    lower, upper = w.lower, w.upper
     if few_left(w, rows.size, taken):
-        _make_columns(A, w, rows, taken)
+        _make_columns(w, rows, taken)
     else:
-        _reflect_rows(A, w, rows, taken)
+        _reflect_rows(w, rows, taken)
     for r in rows:
-        slack[r] += upper[r] if w.side[r] == 1 else lower[r]
+        slack[r] += upper[r] if side[r] == 1 else lower[r]
         rest[r] = dot(W[r], W[r], taken, c.size)
     rank = _triangular(W, w.V, w.beta, rest, w.size, rows, taken, lost * lost)
     if 0 < rank < rows.size:
@@ -110,41 +113,44 @@ def few_left(w: Work, rows: int, taken: int) -> bool:
 
 
 @inner
-def _reflect_rows(A: Array, w: Work, rows: IntArray, taken: int) -> None:
+def _reflect_rows(w: Work, rows: IntArray, taken: int) -> None:
     """W <- A Q, and minus what the coordinates taken make of the rows into `slack`."""
-    W, V, beta, n = w.W, w.V, w.beta, w.c.size
+    A, W, V, beta, slack, c = w.A, w.W, w.V, w.beta, w.slack, w.c
+    n = c.size
     for r in rows:
         copy(A[r], W[r])
     for i in range(taken):
+        j = fours(i)
         for r in rows:
-            add_scaled(-beta[i] * dot(W[r], V[i], i, n), V[i], W[r], i, n)
+            add_scaled(-beta[i] * dot(W[r], V[i], j, n), V[i], W[r], j, n)
     for r in rows:
-        w.slack[r] = -dot(W[r], w.c, 0, taken)
+        slack[r] = -dot(W[r], c, 0, taken)
 
 
 @inner
-def _make_columns(A: Array, w: Work, rows: IntArray, taken: int) -> None:
+def _make_columns(w: Work, rows: IntArray, taken: int) -> None:
     """The same, but of A Q only the columns that are not taken."""
-    n, column = w.c.size, w.pull
+    A, W, V, beta, column = w.A, w.W, w.V, w.beta, w.pull
+    n = column.size
     take_point(w, column, taken)
     for r in rows:
         w.slack[r] = -dot(A[r], column, 0, n)
     for j in range(taken, n):
         for i in range(n):
             column[i] = 1.0 if i == j else 0.0
-        reflect_back(column, w.V, w.beta, taken)
+        reflect_back(column, V, beta, taken)
         for r in rows:
-            w.W[r, j] = dot(A[r], column, 0, n)
+            W[r, j] = dot(A[r], column, 0, n)
 
 
 @inner
-def _complete(A: Array, w: Work, pivots: IntArray, taken: int) -> None:
+def _complete(w: Work, pivots: IntArray, taken: int) -> None:
     """The other columns of A Q, for the rows that multipliers are made of."""
-    row = w.pull
+    A, W, V, beta, row = w.A, w.W, w.V, w.beta, w.pull
     for r in pivots:
         copy(A[r], row)
-        reflect(row, w.V, w.beta, taken)
-        copy(row[:taken], w.W[r])
+        reflect(row, V, beta, taken)
+        copy(row[:taken], W[r])
 
 
 @inner
@@ -188,9 +194,10 @@ def _eliminate(
     v[i] -= end
     pivot[i] = end
     beta[i] = -1.0 / (end * v[i])
+    j = fours(i)
     for r in rows[1:]:
         row = W[r]
-        add_scaled(-beta[i] * dot(row, v, i, n), v, row, i, n)
+        add_scaled(-beta[i] * dot(row, v, j, n), v, row, j, n)
         left = rest[r] - row[i] * row[i]
         if left < CANCELLED * max(rest[r], size[r] * size[r]):
             left = dot(row, row, i + 1, n)

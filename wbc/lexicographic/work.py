@@ -1,33 +1,47 @@
-"""The solver's arrays, allocated once."""
+"""The solver's arrays, allocated once and found through one table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, final
+from functools import lru_cache
+from typing import Annotated, Any, Final, NamedTuple, final
 
 import numpy as np
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import inner, python
+from wbc.compiled import inner
+from wbc.pointers import address_of
+from wbc.structure import ENTRIES, Structure
 
 __all__ = [
-    "MOST", "SOLVED", "TOLERANCE", "Dual", "Memory", "Work", "unpack", "unpack_dual",
-]  # fmt: skip
+    "MOST",
+    "SETTLED",
+    "Dual",
+    "Memory",
+    "Work",
+    "dual_at",
+    "set_problem",
+    "work_at",
+]
 
-SOLVED, MOST, SIZES = 3, 4, 5
-"""The integers start with p, m, n, whether the working set is a solution's, and how
-many steps a method may take from nothing."""
-TOLERANCE, HEAD = 0, 1
-"""The floats start with the share of a level's norm below which nothing counts."""
+SETTLED, MOST = 0, 1
+"""The options: whether the working set is a solution's, and how many steps a method
+may take from nothing."""
 
 
 class Work(NamedTuple):
-    """Everything that a solve writes, but for the dual method.
+    """A problem, and everything that a solve writes but for the dual method.
 
     With Q the product of the reflectors so far, x = Q c; level k owns the coordinates
     c[first[k] : first[k + 1]].
 
     Attributes:
+        A: (m, n) the levels' rows, stacked; not ours, no more than the next two.
+        lower: (m,) their lower bounds.
+        upper: (m,) and upper ones.
+        table: where these three lie, as `Structure` has it.
+        options: (2,) as `SETTLED` and `MOST` list.
+        tolerance: (1,) the share of a level's norm below which nothing counts.
         start: (p + 1,) first row of every level, and the number of rows.
         first: (p + 1,) coordinates taken by the levels before.
         count: (p,) how many of a level's rows are in the working set.
@@ -52,28 +66,34 @@ class Work(NamedTuple):
         rest: (m,) square norm of a row outside the coordinates taken so far.
     """
 
-    start: IntArray
-    first: IntArray
-    count: IntArray  # type: ignore[assignment]  # hides tuple.count
-    level: IntArray
-    side: IntArray
-    order: IntArray
-    fixed: IntArray
-    released: IntArray
-    stuck: IntArray
-    scale: Array
-    size: Array
-    W: Array
-    V: Array
-    factor: Array
-    beta: Array
-    c: Array
-    x: Array
-    target: Array
-    pull: Array
-    slack: Array
-    multiplier: Array
-    rest: Array
+    A: Annotated[Array, "m, n"]
+    lower: Annotated[Array, "m"]
+    upper: Annotated[Array, "m"]
+    table: Annotated[IntArray, "table"]
+    options: Annotated[IntArray, "2"]
+    tolerance: Annotated[Array, "1"]
+    start: Annotated[IntArray, "p + 1"]
+    first: Annotated[IntArray, "p + 1"]
+    count: Annotated[IntArray, "p"]  # type: ignore[assignment]  # hides tuple.count
+    level: Annotated[IntArray, "m"]
+    side: Annotated[IntArray, "m"]
+    order: Annotated[IntArray, "m"]
+    fixed: Annotated[IntArray, "m"]
+    released: Annotated[IntArray, "m"]
+    stuck: Annotated[IntArray, "m"]
+    scale: Annotated[Array, "p"]
+    size: Annotated[Array, "m"]
+    W: Annotated[Array, "m, n"]
+    V: Annotated[Array, "n, n"]
+    factor: Annotated[Array, "n + 1, m"]
+    beta: Annotated[Array, "n"]
+    c: Annotated[Array, "n"]
+    x: Annotated[Array, "n"]
+    target: Annotated[Array, "n"]
+    pull: Annotated[Array, "n"]
+    slack: Annotated[Array, "m"]
+    multiplier: Annotated[Array, "m"]
+    rest: Annotated[Array, "m"]
 
 
 class Dual(NamedTuple):
@@ -95,99 +115,66 @@ class Dual(NamedTuple):
         rate: (m,) how fast a step uses up those held.
     """
 
-    number: IntArray
-    chosen: IntArray
-    held: IntArray
-    known: IntArray
-    pushing: IntArray
-    column: IntArray
-    P: Array
-    Z: Array
-    L: Array
-    point: Array
-    way: Array
-    multiplier: Array
-    rate: Array
+    number: Annotated[IntArray, "1"]
+    chosen: Annotated[IntArray, "m"]
+    held: Annotated[IntArray, "m"]
+    known: Annotated[IntArray, "m"]
+    pushing: Annotated[IntArray, "m"]
+    column: Annotated[IntArray, "m"]
+    P: Annotated[Array, "m, n"]
+    Z: Annotated[Array, "n, n"]
+    L: Annotated[Array, "m, m"]
+    point: Annotated[Array, "n"]
+    way: Annotated[Array, "n"]
+    multiplier: Annotated[Array, "m"]
+    rate: Annotated[Array, "m"]
+
+
+_WORK: Final = Structure(Work)
+_DUAL: Final = Structure(Dual, after=_WORK)
+work_at: Final[Any] = _WORK.at
+dual_at: Final[Any] = _DUAL.at
+
+
+@inner
+def set_problem(w: Work, A: Array, lower: Array, upper: Array) -> None:
+    """Let the structure's problem be these arrays."""
+    w.table[0] = A.ctypes.data
+    w.table[3] = lower.ctypes.data
+    w.table[6] = upper.ctypes.data
 
 
 @final
 class Memory:
-    """The same arrays end to end in two, because a call is as fast as it is short.
+    """All arrays, in one block.
 
     Args:
         sizes: number of rows of every level.
         n: number of unknowns.
 
     Attributes:
-        floats, integers: everything, in the order of `Work` and `Dual`.
-        views: the arrays of `Work` by name.
+        address: of the table of the arrays, for `work_at` and `dual_at`.
     """
 
-    __slots__ = ("floats", "integers", "views")
+    __slots__ = ("_block", "_layout", "address")
 
     def __init__(self, sizes: Sequence[int], n: int) -> None:
-        p, m = len(sizes), int(sum(sizes))
-        self.floats = np.zeros(HEAD + m * (3 * n + m + 7) + n * (2 * n + 7) + p)
-        self.integers = np.zeros(SIZES + 3 * p + 2 + 11 * m + 1, np.int_)
-        self.integers[:3] = p, m, n
-        self.views = python(unpack)(self.floats, self.integers)
-        self.views.start[1:] = np.cumsum(np.array(sizes, np.int_))
-        self.views.level[:] = np.repeat(np.arange(p), sizes)
+        self._layout, size = _layout(len(sizes), int(sum(sizes)), n)
+        self._block = np.zeros(size)
+        table = self["table"]
+        table[:] = self._layout.ravel()
+        table[::ENTRIES] += address_of(self._block)
+        self.address = address_of(table)
+        self["start"][1:] = np.cumsum(np.array(sizes, np.int_))
+        self["level"][:] = np.repeat(np.arange(len(sizes)), sizes)
+
+    def __getitem__(self, name: str) -> Any:
+        """An array of `Work`, as a view."""
+        return _WORK.view(name, self._block, self._layout)
 
 
-@inner
-def unpack(floats: Array, integers: IntArray) -> Work:
-    """The arrays of `Work` in a `Memory`, as views."""
-    p, m, n = integers[0], integers[1], integers[2]
-    i = SIZES
-    start, i = integers[i : i + p + 1], i + p + 1
-    first, i = integers[i : i + p + 1], i + p + 1
-    count, i = integers[i : i + p], i + p
-    level, i = integers[i : i + m], i + m
-    side, i = integers[i : i + m], i + m
-    order, i = integers[i : i + m], i + m
-    fixed, i = integers[i : i + m], i + m
-    released, i = integers[i : i + m], i + m
-    stuck = integers[i : i + m]
-    scale, f = floats[HEAD : HEAD + p], HEAD + p
-    size, f = floats[f : f + m], f + m
-    W, f = floats[f : f + m * n].reshape((m, n)), f + m * n
-    V, f = floats[f : f + n * n].reshape((n, n)), f + n * n
-    factor, f = floats[f : f + (n + 1) * m].reshape((n + 1, m)), f + (n + 1) * m
-    beta, f = floats[f : f + n], f + n
-    c, f = floats[f : f + n], f + n
-    x, f = floats[f : f + n], f + n
-    target, f = floats[f : f + n], f + n
-    pull, f = floats[f : f + n], f + n
-    slack, f = floats[f : f + m], f + m
-    multiplier, f = floats[f : f + m], f + m
-    rest = floats[f : f + m]
-    return Work(
-        start, first, count, level, side, order, fixed, released, stuck, scale, size,
-        W, V, factor, beta, c, x, target, pull, slack, multiplier, rest,
-    )  # fmt: skip
-
-
-@inner
-def unpack_dual(floats: Array, integers: IntArray) -> Dual:
-    """Those of `Dual`, behind them."""
-    p, m, n = integers[0], integers[1], integers[2]
-    i = SIZES + 3 * p + 2 + 6 * m
-    number, i = integers[i : i + 1], i + 1
-    chosen, i = integers[i : i + m], i + m
-    held, i = integers[i : i + m], i + m
-    known, i = integers[i : i + m], i + m
-    pushing, i = integers[i : i + m], i + m
-    column = integers[i : i + m]
-    f = HEAD + p + m * (2 * n + 5) + n * (n + 5)
-    P, f = floats[f : f + m * n].reshape((m, n)), f + m * n
-    Z, f = floats[f : f + n * n].reshape((n, n)), f + n * n
-    L, f = floats[f : f + m * m].reshape((m, m)), f + m * m
-    point, f = floats[f : f + n], f + n
-    way, f = floats[f : f + n], f + n
-    multiplier, f = floats[f : f + m], f + m
-    rate = floats[f : f + m]
-    return Dual(
-        number, chosen, held, known, pushing, column,
-        P, Z, L, point, way, multiplier, rate,
-    )  # fmt: skip
+@lru_cache(maxsize=64)
+def _layout(p: int, m: int, n: int) -> tuple[IntArray, int]:
+    words = {"p": p, "p + 1": p + 1, "m": m, "n": n, "n + 1": n + 1, "1": 1, "2": 2}
+    count = len(Work._fields) + len(Dual._fields)
+    return _DUAL.layout(words | {"table": ENTRIES * count})

