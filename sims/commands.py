@@ -20,7 +20,8 @@ from sims.metrics import table, to_json, verdict
 from sims.registry import cell_names, find_demo
 from sims.report.datatable import Table, as_text
 from sims.report.page import write_report
-from sims.report.snapshot import NoDisplay, write_png
+from sims.report.runs import CAPTION, level_figures
+from sims.report.snapshot import Image, NoDisplay, write_png
 from sims.resolvers import make_resolver
 from sims.view import check_video
 from wbc import InputError, UnknownName
@@ -135,19 +136,31 @@ def _write(folder: Path, title: str, options: Options, outcome: Outcome) -> None
         "versions": ", ".join(f"{p} {version(p)}" for p in PACKAGES),
         "python": platform.python_version(),
     }
+    picture = _picture(outcome)
     write_report(
         folder / "report.html",
         title=title,
         summary="Metrics from the simulator's truth, each against its bound.",
         metrics=outcome.metrics,
         figures=outcome.figures(),
+        runs=level_figures(outcome.courses),
+        how_to_read=CAPTION,
         replay_html=outcome.replay(),
+        picture=picture,
         facts=facts,
     )
     written = ["metrics.json", "log.npz", "report.html"]
-    try:
-        write_png(folder / "picture.png", outcome.picture())
+    if picture is not None:
+        write_png(folder / "picture.png", picture)
         written.append("picture.png")
+    print(f"wrote {', '.join(written)} to {folder}")
+
+
+def _picture(outcome: Outcome) -> Image | None:
+    """Of the run; none, and a word about it, where nothing can be drawn."""
+    try:
+        found: Image = outcome.picture()
     except NoDisplay as error:
         sys.stderr.write(f"wbc: {error}\n")
-    print(f"wrote {', '.join(written)} to {folder}")
+        return None
+    return found

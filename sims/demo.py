@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
+from sims.course import Course
 from sims.metrics import Metric
 from wbc.arrays import Array
 
@@ -52,6 +53,7 @@ class Outcome:
         replay: makes the 3-D replay, one HTML document.
         picture: makes a picture (height, width, 3) of the end of the run.
         facts: what it was made with.
+        courses: of its runs by name; the report draws their levels.
     """
 
     metrics: list[Metric]
@@ -60,6 +62,7 @@ class Outcome:
     replay: Callable[[], str]
     picture: Callable[[], Any]
     facts: dict[str, str] = field(default_factory=dict)
+    courses: Mapping[str, Course] = field(default_factory=dict)
 
 
 @final

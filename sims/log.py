@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from sims.cell import Cell, Observation
+from sims.levels import LevelLog
 from sims.metrics import Metric, table
 from wbc import Controller, Solution, UnknownName
 from wbc.arrays import Array
@@ -28,9 +29,11 @@ class Log:
         torque: (T, n) commanded torques [Nm].
         qpos: (T, nq) of the whole simulated world; (T, 0) where it is not kept.
         errors: task name -> (T,) norm of its error, in the task's unit.
+        units: task name -> unit of its error.
         active: "level k: task: row" -> (T,) whether that bound was active.
         wrenches: sensor name -> (T, 6) what the controller saw [N, Nm].
         ranks: (T, p) directions that each level could use.
+        levels: what the tasks of every level went without, sampled.
         p, R: site name -> (T, 3) and (T, 3, 3) true poses.
         tick: (T,) time of the controller's call [s].
         spent: processor time of control and simulation [s], certificates not counted.
@@ -55,7 +58,10 @@ class Log:
         self.qpos = np.zeros((ticks, cell.model.nq if world else 0))
         self.ranks = np.zeros((ticks, len(controller.hierarchy)), dtype=int)
         self.errors = {task.name: np.full(ticks, np.nan) for task in tasks}
+        self.units: dict[str, str] = {}
+        self._learn_units()
         self.active: dict[str, Array] = {}
+        self.levels = LevelLog(ticks)
         self.wrenches: dict[str, Array] = {}
         self._sites = {name: _site(cell, name) for name in sites}
         self.p = {name: np.zeros((ticks, 3)) for name in sites}
@@ -80,16 +86,22 @@ class Log:
         for name, site in self._sites.items():
             self.p[name][tick] = d.site_xpos[site]
             self.R[name][tick] = d.site_xmat[site].reshape(3, 3)
+        self.levels.record(tick, seen.t, solution)
         if solution.ok:
             self._keep_ranks(tick, solution.ranks)
             for name, error in solution.error_norms():
                 if name not in self.errors:
+                    self._learn_units()
                     self.errors[name] = np.full(self.t.size, np.nan)
                 self.errors[name][tick] = error
             for name in solution.active_rows():
                 if name not in self.active:
                     self.active[name] = np.zeros(self.t.size, dtype=bool)
                 self.active[name][tick] = True
+
+    def _learn_units(self) -> None:
+        tasks = self._controller.hierarchy.tasks()
+        self.units |= {task.name: task.unit for task in tasks}
 
     def _keep_ranks(self, tick: int, ranks: tuple[int, ...]) -> None:
         """Another hierarchy may have more levels than the first one, or fewer."""
@@ -106,6 +118,7 @@ class Log:
         for series in (self.errors, self.active, self.wrenches, self.p, self.R):
             for name in series:
                 series[name] = series[name][:k]
+        self.levels.trim()
         self.failures = self._controller.failures - self._failed
         if not self._controller.resolver.name.startswith("hqp"):
             self.worst_certificate = np.nan
@@ -119,7 +132,7 @@ class Log:
         named |= {f"active/{name}": a for name, a in self.active.items()}
         named |= {f"wrench/{name}": w for name, w in self.wrenches.items()}
         named |= {f"p/{name}": p for name, p in self.p.items()}
-        return named
+        return named | self.levels.arrays()
 
     def summary(self) -> str:
         """Shared metrics and the last error of every task, as text."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.bounds import at_bounds
-from wbc.certificate import Certificate, certify, slack_of
+from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.resolver import Answer, Status
@@ -202,6 +202,27 @@ class Solution:
             if active
         ]
 
+    def shortfalls(self) -> list[tuple[int, str, float]]:
+        """Level, name and relative shortfall of every task, cheap enough for a log.
+
+        |missing| / |wanted| of the weighted rows, at most 1, and 0 where a task is met
+        up to round-off. Of inequalities the broken rows alone count.
+        """
+        stack, vdot = self._fresh(), self.acceleration
+        value = stack.A @ vdot
+        wanted = np.clip(value, stack.lower, stack.upper)
+        missing = wanted - value
+        length = np.sqrt(np.einsum("mn,mn->m", stack.A, stack.A))
+        near = AT_BOUND * (length * (1.0 + math.sqrt(vdot @ vdot)) + np.abs(value))
+        missing[np.abs(missing) <= near] = 0.0
+        wanted[(stack.lower < stack.upper) & (missing == 0.0)] = 0.0
+        found = []
+        for term in stack.terms:
+            lack, wish = missing[term.where], wanted[term.where]
+            share = _share(math.sqrt(lack @ lack), math.sqrt(wish @ wish))
+            found.append((term.level + 1, term.task.name, share))
+        return found
+
     def _report(self, stack: Stack, term: Term) -> TaskReport:
         where = term.where
         A, lower, upper = stack.A[where], stack.lower[where], stack.upper[where]
@@ -233,3 +254,8 @@ class Solution:
     def __repr__(self) -> str:
         torque = np.array2string(self.torque, precision=3, suppress_small=True)
         return f"Solution({self.status.name}, torque={torque}, ranks={self.ranks})"
+
+
+def _share(part: float, whole: float) -> float:
+    """Part / whole, 1 where the part is as large or larger."""
+    return 0.0 if part == 0.0 else 1.0 if part >= whole else part / whole

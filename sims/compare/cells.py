@@ -13,6 +13,7 @@ from sims.demo import Demo, Options, Outcome
 from sims.metrics import Metric, format_value
 from sims.report.datatable import Table
 from sims.report.page import write_report
+from sims.report.runs import CAPTION, compared_figures
 from sims.run import probing
 
 __all__ = ["run_sampled", "side_by_side", "write"]
@@ -65,8 +66,11 @@ def write(
         summary=_words(outcomes),
         metrics=_judged(outcomes),
         figures=[*_figures(outcomes), *drawn],
+        runs=compared_figures({way: o.courses for way, o in outcomes.items()}),
+        how_to_read=CAPTION,
         facts={r: f"{_folder(r)}/report.html" for r in outcomes},
-        data=[side_by_side(demo.name, outcomes), *regrets],
+        data=[side_by_side(demo.name, outcomes)],
+        annex=regrets,
     )
 
 

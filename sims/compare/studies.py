@@ -19,11 +19,13 @@ from sims.compare.transitions import (
     bars,
     passages,
 )
+from sims.course import Course
 from sims.demo import Options
 from sims.metrics import Metric, table, to_json, verdict
 from sims.report.datatable import Table, as_text
 from sims.report.figures import time_series
 from sims.report.page import write_report
+from sims.report.runs import CAPTION, compared_figures
 
 __all__ = ["STUDIES"]
 
@@ -89,6 +91,8 @@ def _write(
         summary=_words(found),
         metrics=judged,
         figures=_figures(found),
+        runs=compared_figures(_courses(found)),
+        how_to_read=CAPTION,
         facts={
             "seed": str(options.seed),
             "ramp": f"{OVER} s, changes in a hurry {HURRY} s apart",
@@ -99,6 +103,14 @@ def _write(
         },
         data=[rates(found)],
     )
+
+
+def _courses(found: Sequence[Passage]) -> dict[str, dict[str, Course]]:
+    """Resolver -> mode -> its course."""
+    courses: dict[str, dict[str, Course]] = {}
+    for passage in found:
+        courses.setdefault(passage.resolver, {})[passage.mode] = Course.of(passage.log)
+    return courses
 
 
 def _words(found: Sequence[Passage]) -> str:

@@ -14,12 +14,14 @@ from sims import constraints
 from sims.cell import ArmCell, Cell
 from sims.constraints import hybrid, joint_limit, plane, singular
 from sims.constraints.case import Case, Trial
+from sims.constraints.compared import compared
 from sims.constraints.soundness import soundness
 from sims.constraints.surface import TIP
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
 from sims.metrics import Metric
-from sims.report.replay import Replay, Trace
+from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import Decision, run
@@ -68,9 +70,10 @@ def _run(options: Options) -> Outcome:
         metrics=[*judged, *_safety(trials), *shared_metrics(list(logs.values()))],
         series=_series(trials),
         figures=lambda: [f for family in FAMILIES for f in family.figures(trials)],
-        replay=lambda: _replay(cell.model, logs),
+        replay=lambda: _replay(cell.model, trials),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": _simulated(logs)},
+        courses={name: Course.of(log) for name, log in logs.items()},
     )
 
 
@@ -124,19 +127,35 @@ def _simulated(logs: dict[str, Log]) -> str:
     return f"{sum(log.t.size for log in logs.values()) * 1e-3:.1f} s"
 
 
-def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
-    """All runs in a row, each with the way of the tip."""
-    times, qpos, traces, begin = [], [], [], 0.0
-    for i, (name, log) in enumerate(logs.items()):
+def _replay(model: mujoco.MjModel, trials: dict[str, Trial]) -> str:
+    """All runs in a row, each with the way of the tip, and what the probe presses."""
+    times, traces, chapters, begin = [], [], [], 0.0
+    for i, (name, trial) in enumerate(trials.items()):
+        log = trial.log
         t = begin + log.t - log.t[0]
         times.append(t)
-        qpos.append(log.qpos)
-        way = log.p[TIP][::20]
-        colour = COLOURS[i % len(COLOURS)]
-        traces.append(Trace(f"tip: {name}", way, colour, 0.004, t[::20]))
+        chapters.append((name, begin))
+        way, colour = log.p[TIP][::20], COLOURS[i % len(COLOURS)]
+        traces.append(Trace(f"tip: {name}", way, colour, 0.004, t[::20], listed=False))
         begin = t[-1] + PAUSE
-    stamps, states = np.concatenate(times), np.concatenate(qpos)
-    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+    logs = [trial.log for trial in trials.values()]
+    tips = np.concatenate([log.p[TIP] for log in logs])
+    forces = np.concatenate([_felt(trial) for trial in trials.values()])
+    return Replay(
+        model,
+        np.concatenate(times),
+        np.concatenate([log.qpos for log in logs]),
+        traces=traces,
+        arrows=[Arrow("probe on plate", tips, forces, ends=True)],
+        chapters=chapters,
+        camera=_camera(),
+    ).html()
+
+
+def _felt(trial: Trial) -> Array:
+    """Force (T, 3) of the probe on the plate [N]; none where it cannot touch it."""
+    wrench = trial.log.wrenches["wrist"]
+    return wrench[:, :3] * float(trial.case.contact)
 
 
 def _picture(cell: ArmCell) -> Image:
@@ -156,4 +175,5 @@ DEMO = Demo(
     "constraints",
     "planes, joint limits and hybrid force: the paper's constraints, one by one",
     _run,
+    compared=compared,
 )

@@ -14,14 +14,16 @@ from robots import racer
 from sims import contact
 from sims.cell import ArmCell, Cell
 from sims.constraints.case import READY
+from sims.contact.compared import compared
 from sims.contact.crank import SUNK, Belief, Turning, believed_cranks, handle
 from sims.contact.figures import figures
 from sims.contact.peg import ABOVE, DOWN, Insertion, Search, Stay, believed_holes
 from sims.contact.results import Attempt, Crank, metrics
 from sims.contact.scene import CRANK_JOINT, TIP
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
-from sims.report.replay import Replay, Trace
+from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import render
 from sims.resolvers import make_resolver
 from sims.run import Decision, run
@@ -94,6 +96,7 @@ def run_jobs(options: Options, pegs: int = PEGS, cranks: int = CRANKS) -> Outcom
         replay=lambda: _replay(cell.model, attempts, turned),
         picture=lambda: render(cell.model, cell.data, _camera(), 1280, 800),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
+        courses=_courses(attempts, turned),
     )
 
 
@@ -158,22 +161,44 @@ def _named(attempts: list[Attempt], cranks: list[Crank]) -> dict[str, Log]:
     return named
 
 
+def _courses(attempts: list[Attempt], cranks: list[Crank]) -> dict[str, Course]:
+    """Of every attempt, its phases in a row, and of every crank."""
+    courses = {f"peg {i + 1}": Course.of(*a.logs) for i, a in enumerate(attempts)}
+    return courses | {
+        f"crank {i + 1}": Course.of(crank.log) for i, crank in enumerate(cranks)
+    }
+
+
 def _replay(model: mujoco.MjModel, attempts: list[Attempt], cranks: list[Crank]) -> str:
     """Some attempts and a crank in a row, each with the way of the peg's end."""
     shown = _named(attempts[:SHOWN], [])
     shown |= _named([], cranks[:1])
-    times, qpos, traces, begin = [], [], [], 0.0
+    times, traces, chapters, begin = [], [], [], 0.0
     for name, log in shown.items():
         t = begin + log.t - log.t[0]
         times.append(t)
-        qpos.append(log.qpos)
-        colour = "#0072B2" if name.startswith("crank") else "#D55E00"
-        traces.append(Trace(name, log.p[TIP][::20], colour, 0.0015, t[::20]))
-        begin = t[-1] + (
-            PAUSE if name.startswith("crank") or name.endswith("stay") else 0.01
+        chapters.append((name, begin))
+        turns = name.startswith("crank")
+        way, colour = log.p[TIP][::20], "#0072B2" if turns else "#D55E00"
+        traces.append(Trace(name, way, colour, 0.0015, t[::20], listed=False))
+        begin = t[-1] + (PAUSE if turns or name.endswith("stay") else 0.01)
+    states, tips, wrenches = (
+        np.concatenate(parts)
+        for parts in zip(
+            *((g.qpos, g.p[TIP], g.wrenches["wrist"]) for g in shown.values()),
+            strict=True,
         )
-    stamps, states = np.concatenate(times), np.concatenate(qpos)
-    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+    )
+    push = Arrow("peg on block and crank", tips, wrenches[:, :3], ends=True)
+    return Replay(
+        model,
+        np.concatenate(times),
+        states,
+        traces=traces,
+        arrows=[push],
+        chapters=chapters,
+        camera=_camera(),
+    ).html()
 
 
 def _camera() -> mujoco.MjvCamera:
@@ -188,4 +213,5 @@ DEMO = Demo(
     "contact",
     "a peg finds its hole by force, and a crank is turned that is hardly known",
     run_jobs,
+    compared=compared,
 )

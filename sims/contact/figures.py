@@ -59,8 +59,9 @@ def _padded(
         f"attempt {index + 1}": np.append(v, np.full(longest - len(v), np.nan))
         for index, v in enumerate(values)
     }
-    log = attempts[0].logs[0]
-    return (log.t[1] - log.t[0]) * np.arange(longest), curves
+    t = attempts[0].logs[0].t
+    dt = t[1] - t[0] if t.size > 1 else 0.0
+    return dt * np.arange(longest), curves
 
 
 def _crank(crank: Crank) -> list[tuple[str, str]]:

@@ -7,13 +7,16 @@ from dataclasses import replace
 from functools import partial
 from typing import get_args
 
+from sims.course import Course
 from sims.cutting.cell import CuttingCell
+from sims.cutting.compared import compared
 from sims.cutting.correction import Experiment
 from sims.cutting.figures import figures
 from sims.cutting.loop import Run, run_job
 from sims.cutting.meat import Meat
 from sims.cutting.metrics import metrics
-from sims.cutting.pictures import camera, describe, guide_line, picture, replay
+from sims.cutting.pictures import camera, describe, guide_line, picture
+from sims.cutting.playback import replay
 from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
 from sims.demo import Demo, Options, Outcome
@@ -67,6 +70,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: replay(run),
         picture=lambda: picture(run),
         facts=_facts(run, trial),
+        courses={log.robot.name: Course.of(log) for log in run.logs},
     )
 
 
@@ -114,4 +118,5 @@ DEMO = Demo(
     "two 7-axis arms cut deformable meat apart along a guide line",
     _run,
     EXPERIMENTS,
+    compared=compared,
 )

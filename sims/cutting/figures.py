@@ -24,14 +24,13 @@ SAMPLES = 60
 def figures(run: Run) -> list[tuple[str, str]]:
     """(caption, svg) pairs: those of the paper first, then the robots."""
     record = run.record
-    drawn = [_trajectories(run)]
-    shots = snapshots(run)
+    drawn, shots = [], snapshots(run)
     if shots is not None:
         drawn.append(("The separation, passage after passage (P0, Fig. 6).", shots))
     if record.lines:
         drawn.append(_passages(run))
-    drawn += [_force(record), _place(record), _opening(record), _error(record)]
-    drawn += [_knife(record)]
+    drawn += [_trajectories(run), _force(record), _place(record), _opening(record)]
+    drawn += [_error(record), _knife(record)]
     for log in run.logs:
         share = np.abs(log.torque) / log.robot.tau_max
         joints = dict(zip(log.robot.joint_names, share.T, strict=True))
@@ -56,22 +55,23 @@ def _trajectories(run: Run) -> tuple[str, str]:
 
 @styled
 def _panels(run: Run) -> str:
-    record = run.record
-    count = len(record.lines)
-    figure = Figure(figsize=(6.4, 1.9 * count + 0.6), layout="constrained")
-    for k, axes in enumerate(np.atleast_1d(figure.subplots(count, 1, sharex=True))):
-        for (name, points), colour in zip(
-            _curves(run, k).items(), PALETTE, strict=False
-        ):
-            axes.plot(
-                points[:, 0], MILLI * points[:, 1], color=colour, label=name, lw=1.3
-            )
-        axes.set_ylabel(f"pass {k + 1}: y [mm]")
+    count = len(run.record.lines)
+    size = (6.4, 3.4) if count < 3 else (12.8, 3.2)
+    figure = Figure(figsize=size, layout="constrained")
+    for k, axes in enumerate(np.atleast_1d(figure.subplots(1, count, sharex=True))):
+        curves = zip(_curves(run, k).items(), PALETTE, strict=False)
+        for (name, points), colour in curves:
+            y = MILLI * points[:, 1]
+            axes.plot(points[:, 0], y, color=colour, label=name, lw=1.3)
+        axes.set(title=f"pass {k + 1}", xlabel="x [m]")
+        axes.title.set_fontweight("normal")
         axes.grid(visible=True, color="#E3E6E8", linewidth=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.locator_params(axis="x", nbins=4)
         if k == 0:
-            style: dict[str, Any] = {"fontsize": 8, "ncols": 2, "frameon": False}
+            axes.set_ylabel("y [mm]")
+            style: dict[str, Any] = {"fontsize": 8, "ncols": 4, "frameon": False}
             figure.legend(loc="outside lower center", **style)
-    axes.set_xlabel("x [m]")
     title = f"Knife and guide line, experiment '{run.job.experiment}'"
     figure.suptitle(title, fontsize=10.5, fontweight="bold")
     return to_svg(figure, title)
@@ -133,7 +133,11 @@ def _opening(record: Record) -> tuple[str, str]:
         "links cut [%]": 100.0 * record.cut,
     }
     svg = time_series(
-        "Opening of the valley", record.coarse_t, lines, "mm, %", spans=_spans(record)
+        "Opening of the valley",
+        record.coarse_t,
+        lines,
+        "opening [mm], links [%]",
+        spans=_spans(record),
     )
     return "Mean distance of the two muscles along y, and links cut.", svg
 

@@ -1,10 +1,8 @@
-"""Pictures of a cut: snapshots, the end, and the replay."""
+"""Pictures of a cut: snapshots, and the end."""
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 from typing import Final
 
 import mujoco
@@ -15,18 +13,13 @@ from sims.cutting.job import Job
 from sims.cutting.loop import Run
 from sims.cutting.meat import Meat
 from sims.cutting.metrics import REST
-from sims.report.axes import PALETTE
-from sims.report.replay import Replay, Trace
-from sims.report.snapshot import Image, NoDisplay, render
+from sims.report.snapshot import Image, NoDisplay, data_url, render
 from sims.view.marks import TARGET, Mark
 from sims.view.sketches import chain
 
-__all__ = ["camera", "describe", "guide_line", "picture", "replay", "snapshots"]
+__all__ = ["camera", "describe", "guide_line", "picture", "snapshots"]
 
 WIDTH, HEIGHT = 480, 320
-REPLAY_RATE: Final = 15.0
-"""Frames a second: every one stores all vertices of the meat."""
-THIN: Final = 20
 POINTS: Final = 40
 """Of a guide line."""
 
@@ -66,58 +59,29 @@ def snapshots(run: Run) -> str | None:
     moments = [("before the cut", 0.0)]
     moments += [(f"after passage {k}", t + REST) for k, t in enumerate(ended, 1)]
     try:
-        shots = [(name, _jpeg(_at(run, t, view, WIDTH, HEIGHT))) for name, t in moments]
+        images = [_at(run, t, view, WIDTH, HEIGHT) for _, t in moments]
     except NoDisplay:
         return None
-    return _contact_sheet(shots)
+    names = [name for name, _ in moments]
+    return _contact_sheet(list(zip(names, map(data_url, images), strict=True)))
 
 
-def _jpeg(image: Image) -> str:
-    import PIL.Image
-
-    buffer = io.BytesIO()
-    PIL.Image.fromarray(image).save(buffer, format="JPEG", quality=85)
-    return base64.b64encode(buffer.getvalue()).decode("ascii")
-
-
-def _contact_sheet(shots: list[tuple[str, str]], columns: int = 2) -> str:
+def _contact_sheet(shots: list[tuple[str, str]], columns: int = 3) -> str:
     rows = -(-len(shots) // columns)
     parts = []
     for i, (name, data) in enumerate(shots):
         x, y = (i % columns) * WIDTH, (i // columns) * HEIGHT
         parts.append(
             f'<image x="{x}" y="{y}" width="{WIDTH}" height="{HEIGHT}" '
-            f'href="data:image/jpeg;base64,{data}"/><text x="{x + 12}" y="{y + 26}" '
-            f'font-family="sans-serif" font-size="20">{html.escape(name)}</text>'
+            f'href="{data}"/><text x="{x + 12}" y="{y + 26}" '
+            f'font-family="sans-serif" font-size="20" stroke="#fff" stroke-width="4" '
+            f'paint-order="stroke">{html.escape(name)}</text>'
         )
     size = f"0 0 {columns * WIDTH} {rows * HEIGHT}"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img" '
         f'aria-label="The separation in snapshots">{"".join(parts)}</svg>'
     )
-
-
-def replay(run: Run) -> str:
-    """The whole cut in three dimensions, with the way of the knife's tip."""
-    record = run.record
-    traces = []
-    for index, line in enumerate(record.lines):
-        x = np.linspace(record.low, record.high, 40)
-        z = np.full(x.size, run.job.passages.plan.depths[index])
-        planned = np.column_stack([x, line(x), z])
-        traces.append(
-            Trace(f"passage {index + 1}", planned, PALETTE[index % 7], 0.0015)
-        )
-    way = record.tip[::THIN]
-    traces.append(Trace("knife", way, "#000000", 0.0015, record.t[::THIN]))
-    return Replay(
-        run.cell.model,
-        record.coarse_t,
-        record.qpos,
-        traces=traces,
-        camera=camera(),
-        rate=REPLAY_RATE,
-    ).html()
 
 
 def guide_line(job: Job, meat: Meat) -> list[Mark]:

@@ -43,6 +43,7 @@ class Record:
         coarse_t: (C,) [s].
         guide: (C, 2) x and y of the guide line where the knife is; NaN between strokes,
             and when nothing is left of it.
+        interface: (C, nu, nw, 3) middles of the links, along the seam and down [m].
         opening, cut: (C,) mean opening [m] and share of links cut.
         qpos: (C, nq) of the world.
     """
@@ -69,6 +70,8 @@ class Record:
         self.coarse_t, self.opening, self.cut = np.zeros((3, coarse))
         self.guide = np.full((coarse, 2), np.nan)
         self.qpos = np.zeros((coarse, cell.model.nq))
+        grid = cell.tissue.meat.links.grid
+        self.interface = np.zeros((coarse, *grid, 3), dtype=np.float32)
 
     def take(self) -> None:
         """Keep this instant, before the cell moves on."""
@@ -93,10 +96,12 @@ class Record:
         self.coarse_t[j], self.qpos[j] = self.t[i], cell.data.qpos
         self.opening[j] = cell.tissue.opening()
         self.cut[j] = cell.tissue.links_cut_fraction
+        points = cell.tissue.interface_points()[0]
+        self.interface[j] = points.reshape(self.interface[j].shape)
         x, _, z = self.tip[i]
         if self.stroke[i] >= 0 and self.low <= x <= self.high:
             live = LiveGuide()
-            live.see(Frame(0.0, cell.tissue.interface_points()[0]), x, z)
+            live.see(Frame(0.0, points), x, z)
             sight = live.at(x, 0.0)
             if sight is not None:
                 self.guide[j] = x, sight.y
@@ -108,7 +113,7 @@ class Record:
             setattr(self, name, getattr(self, name)[:k])
         for name in ("tip", "grip", "wanted", "knife"):
             setattr(self, name, getattr(self, name)[:k])
-        for name in ("coarse_t", "opening", "cut", "guide", "qpos"):
+        for name in ("coarse_t", "opening", "cut", "guide", "qpos", "interface"):
             setattr(self, name, getattr(self, name)[:c])
         self.guide[self.coarse_t >= self._job.separated_at] = np.nan
 

@@ -11,6 +11,7 @@ import numpy as np
 from robots import racer
 from sims import grasping
 from sims.cell import ArmCell, Cell
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.grasping.cases import COUNT, Case, seeded_cases
 from sims.grasping.figures import figures
@@ -19,6 +20,7 @@ from sims.grasping.job import Job
 from sims.grasping.metrics import OBJECT, Result, metrics
 from sims.grasping.plan import TCP
 from sims.grasping.scene import GOAL
+from sims.grasping.touch import Touch
 from sims.log import shared_metrics
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
@@ -62,6 +64,7 @@ def run_cases(options: Options, count: int = COUNT) -> Outcome:
         replay=lambda: replay(results),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": f"{simulated:.1f} s"},
+        courses={r.job.cylinder.name: Course.of(r.log) for r in results},
     )
 
 
@@ -71,7 +74,10 @@ def _grasp(
     cell.reset(case.start)
     job = Job(arm, cell, case.cylinder, GOAL, case.start)
 
+    touch = Touch(cell.model)
+
     def watch(cell: Cell, decisions: Sequence[Decision]) -> bool:
+        touch.see(cell.data)
         return display(cell, decisions) and job.watch(cell, decisions)
 
     log = run(
@@ -86,7 +92,7 @@ def _grasp(
     )
     if job.failed and options.duration is None:
         sys.stderr.write(f"wbc: {job.report}\n")
-    return Result(job, log)
+    return Result(job, log, touch)
 
 
 def _picture(cell: ArmCell) -> Image:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sims.grasping.metrics import OBJECT, Result, misfit, slip
 from sims.grasping.plan import TCP
-from sims.report.figures import heat_rows, lines3d, time_series, xy
+from sims.report.figures import lines3d, time_series, xy
 from wbc.arrays import Array
 
 __all__ = ["figures"]
@@ -97,8 +97,4 @@ def _robot(result: Result) -> list[tuple[str, str]]:
     joints = dict(zip(log.robot.joint_names, share.T, strict=True))
     title = f"{name}: use of the torque limits"
     torques = time_series(title, log.t, joints, "share of limit [1]")
-    drawn = [(f"Joint torques of the job '{name}'.", torques)]
-    if log.active:
-        rows = heat_rows(f"{name}: active bounds", log.t, log.active)
-        drawn.append((f"Which limit was active when, in '{name}'.", rows))
-    return drawn
+    return [(f"Joint torques of the job '{name}'.", torques)]

@@ -17,7 +17,8 @@ from sims.grasping.scene import (
     add_stand,
     scene,
 )
-from sims.report.replay import Replay, Trace
+from sims.report.axes import PALETTE
+from sims.report.replay import Arrow, Replay, Trace
 from sims.scene import add_box
 from wbc.arrays import Array
 
@@ -35,19 +36,41 @@ SPACING: Final = 0.14
 def replay(results: list[Result]) -> str:
     """The replay as an HTML document."""
     model = _model(results)
-    times, states, traces, begin = [], [], [], 0.0
+    times, states, traces, pushes, chapters = [], [], [], [], []
+    begin = 0.0
     for index, result in enumerate(results):
         log = result.log
         t = begin + log.t[::STRIDE] - log.t[0]
+        chapters.append((result.job.cylinder.name, begin))
         times += [t, [t[-1] + PAUSE - 0.02]]
         qpos = _states(model, results, index)
         states += [qpos, qpos[-1:]]
+        push = _pushes(result)
+        pushes += [push, push[-1:]]
         path = log.p[TCP][::STRIDE]
         traces.append(Trace(f"tcp: {result.job.cylinder.name}", path, width=0.003))
         begin = t[-1] + PAUSE
     shown = traces if len(traces) < 3 else ()
-    stamps, rows = np.concatenate(times), np.concatenate(states)
-    return Replay(model, stamps, rows, traces=shown, camera=camera()).html()
+    points, forces = np.moveaxis(np.concatenate(pushes), 2, 0)
+    arrows = [
+        Arrow(
+            f"{_spoken(name)} on cylinder",
+            points[:, i],
+            forces[:, i],
+            colour=PALETTE[i],
+            ends=True,
+        )
+        for i, name in enumerate(JOINTS)
+    ]
+    return Replay(
+        model,
+        np.concatenate(times),
+        np.concatenate(states),
+        traces=shown,
+        arrows=arrows,
+        chapters=chapters,
+        camera=camera(),
+    ).html()
 
 
 def camera() -> mujoco.MjvCamera:
@@ -85,6 +108,20 @@ def _states(model: mujoco.MjModel, results: list[Result], turn: int) -> Array:
     moving = own[:, _free(world, OBJECT)]
     out[:, _free(model, f"cylinder {turn}")] = moving
     return out
+
+
+def _spoken(joint: str) -> str:
+    """Of "finger_left", "left finger"."""
+    return " ".join(reversed(joint.split("_")))
+
+
+def _pushes(result: Result) -> Array:
+    """Place and force (T, 2, 2, 3) of both fingers, at the samples of the replay."""
+    log, touch = result.log, result.touch
+    samples = np.stack([touch.points, touch.forces], axis=2)
+    latest = np.searchsorted(touch.t, log.t[::STRIDE], side="right") - 1
+    pushes: Array = samples[np.maximum(latest, 0)]
+    return pushes
 
 
 def _place(model: mujoco.MjModel, joint: str) -> int:

@@ -13,6 +13,7 @@ from sims.grasping.gripper import Grip
 from sims.grasping.job import Job
 from sims.grasping.plan import TCP
 from sims.grasping.scene import GOAL
+from sims.grasping.touch import Touch
 from sims.log import Log
 from sims.metrics import Metric
 from wbc import Resolver
@@ -36,10 +37,11 @@ SOUND: Final = 1e-9
 @final
 @dataclass(frozen=True, slots=True, eq=False)
 class Result:
-    """A job that has been run, with its log."""
+    """A job that has been run, with its log and what the fingers exerted."""
 
     job: Job
     log: Log
+    touch: Touch
 
     def span(self, first: str, last: str) -> slice:
         """Ticks from the end of one phase to the end of another."""

@@ -97,20 +97,16 @@ def draw_bounds(axes: Axes, bounds: Bounds | None, series: list[ArrayLike]) -> N
             axes.axhline(bound, label=name or "_bound", **line)
 
 
-def shade(axes: Axes, spans: Sequence[Span], filled: bool = True) -> None:
+def shade(axes: Axes, spans: Sequence[Span]) -> None:
     """Tint intervals in turn and write their names along the upper edge."""
     begin, end = axes.get_xlim()
     if spans:
         axes.set_title(axes.get_title(), pad=15.0)
     for index, (name, start, stop) in enumerate(spans):
-        if filled:
-            tint = ("#56B4E9", "#E69F00")[index % 2]
-            axes.axvspan(start, stop, color=tint, alpha=0.13, linewidth=0.0)
-        else:
-            axes.axvline(start, color="#202124", linewidth=0.8)
-            axes.axvline(stop, color="#202124", linewidth=0.8)
+        tint = ("#56B4E9", "#E69F00")[index % 2]
+        axes.axvspan(start, stop, color=tint, alpha=0.13, linewidth=0.0)
         middle = 0.5 * (max(start, begin) + min(stop, end))
-        narrow = (stop - start) / (end - begin) < 0.016 * len(name)
+        narrow = (stop - start) / (end - begin) < 0.012 * len(name)
         where = _INSIDE if narrow else _ABOVE
         axes.annotate(name, (middle, 1.0), xycoords=("data", "axes fraction"), **where)
     axes.set_xlim(begin, end)

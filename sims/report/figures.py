@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
@@ -25,11 +24,10 @@ from sims.report.axes import (
     vector,
 )
 from sims.report.svg import styled, to_svg
-from sims.report.thinning import columns, thin_curve, thin_series
-from wbc.arrays import Array
+from sims.report.thinning import thin_curve, thin_series
 from wbc.errors import InputError
 
-__all__ = ["PALETTE", "Bounds", "Span", "heat_rows", "lines3d", "time_series", "xy"]
+__all__ = ["PALETTE", "Bounds", "Span", "lines3d", "time_series", "xy"]
 
 _POINTS = 3600  # vertices of one figure; about 24 bytes each
 
@@ -69,48 +67,6 @@ def time_series(
         axes.set_xlim(times[0], times[-1] if times[-1] > times[0] else None)
     shade(axes, spans or ())
     legend(axes)
-    return to_svg(figure, title)
-
-
-@styled
-def heat_rows(
-    title: str,
-    t: ArrayLike,
-    rows: Mapping[str, ArrayLike],
-    unit: str = "",
-    spans: Sequence[Span] | None = None,
-) -> str:
-    """One coloured strip a row over time, such as which limit is active when.
-
-    Args:
-        title: what the figure shows.
-        t: times (T,) [s], ascending.
-        rows: label -> values (T,); booleans become on and off, numbers a scale of
-            colours. Where several samples share a pixel the largest magnitude shows.
-        unit: quantity and unit of numbers, for the colour bar.
-        spans: intervals (name, begin [s], end [s]) to mark.
-    """
-    times = vector(t, "t")
-    if not rows or len(times) < 2:
-        raise InputError("a heat map needs a row and two samples.")
-    flags = all(np.asarray(values).dtype == bool for values in rows.values())
-    table = np.array([vector(values, k, len(times)) for k, values in rows.items()])
-    figure, axes = new_figure(title, "time [s]", "", height=1.2 + 0.22 * len(rows))
-    image = axes.imshow(
-        columns(times, table, 600),
-        aspect="auto",
-        interpolation="none",
-        extent=(times[0], times[-1], len(rows) - 0.5, -0.5),
-        **_colours(table, flags),
-    )
-    axes.set_yticks(range(len(rows)), list(rows))
-    axes.set_yticks(np.arange(0.5, len(rows) - 1), minor=True)
-    axes.grid(visible=False)
-    axes.grid(visible=True, which="minor", axis="y", color="white", linewidth=2.0)
-    axes.tick_params(which="minor", length=0.0)
-    if not flags:
-        figure.colorbar(image, ax=axes, label=unit)
-    shade(axes, spans or (), filled=False)
     return to_svg(figure, title)
 
 
@@ -156,21 +112,13 @@ def lines3d(
         kept = thin_curve(points, budget)
         axes.plot(*points[kept].T, label=label, **look)
     axes.set_aspect("equal")
-    spans = {axis: np.ptp(getattr(axes, f"get_{axis}lim")()) for axis in "xyz"}
+    axes.set_box_aspect(axes.get_box_aspect(), zoom=0.82)  # labels stay inside
+    spans = {axis: float(np.ptp(getattr(axes, f"get_{axis}lim")())) for axis in "xyz"}
+    longest = max(spans.values())
     for axis, span in spans.items():
-        bins = max(2, round(6.0 * span / max(spans.values())))
-        axes.locator_params(axis=axis, nbins=bins)
+        axes.locator_params(axis=axis, nbins=max(2, round(6.0 * span / longest)))
+        # Pads are measured along the other two axes, so thin boxes need larger ones.
+        thin = longest / (0.5 * (sum(spans.values()) - span))
+        getattr(axes, f"{axis}axis").labelpad = 8.0 * thin - 4.0
     legend(axes)
     return to_svg(figure, title)
-
-
-def _colours(table: Array, flags: bool) -> dict[str, Any]:
-    """Two colours for flags; one scale from zero, or two where signs differ."""
-    if flags:
-        return {"cmap": ListedColormap(["#ECEFF1", PALETTE[1]]), "vmin": 0, "vmax": 1}
-    finite = table[np.isfinite(table)]
-    least, greatest = (finite.min(), finite.max()) if finite.size else (0.0, 1.0)
-    if least < 0.0 < greatest:
-        reach = max(-least, greatest)
-        return {"cmap": "PuOr", "vmin": -reach, "vmax": reach}
-    return {"cmap": "cividis", "vmin": min(least, 0.0), "vmax": max(greatest, 0.0)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -40,9 +41,12 @@ class Motion:
 
 
 def frames(times: Array, rate: float) -> NDArray[np.intp]:
-    """Indices of samples, first and last included, at most `rate` [1/s] of them."""
-    duration = float(times[-1] - times[0])
-    wanted = np.linspace(times[0], times[-1], max(int(duration * rate), 1) + 1)
+    """Indices of samples, first and last included, `rate` [1/s] of them or just more.
+
+    Fewer where the samples themselves are not so many.
+    """
+    count = math.ceil(float(times[-1] - times[0]) * rate - 1e-9)
+    wanted = np.linspace(times[0], times[-1], max(count, 1) + 1)
     after = np.searchsorted(times, wanted - 1e-9).clip(0, len(times) - 1)
     return np.unique(after)
 

@@ -8,8 +8,9 @@ from importlib.resources import files
 from pathlib import Path
 
 from sims.metrics import Metric, format_value, to_json, verdict
+from sims.report.cards import Drawing, cards, folded
 from sims.report.datatable import Table, as_html
-from wbc.errors import InputError
+from sims.report.snapshot import Image, data_url
 
 __all__ = ["write_report"]
 
@@ -41,10 +42,14 @@ def write_report(
     title: str,
     summary: str,
     metrics: Sequence[Metric],
-    figures: Sequence[tuple[str, str]] = (),
+    figures: Sequence[Drawing] = (),
+    runs: Sequence[Drawing] = (),
+    how_to_read: str = "",
     replay_html: str | None = None,
+    picture: Image | None = None,
     facts: Mapping[str, str] | None = None,
     data: Sequence[Table] = (),
+    annex: Sequence[Table] = (),
 ) -> None:
     """Write one self-contained page.
 
@@ -54,22 +59,30 @@ def write_report(
         summary: plain text below the heading; line breaks are kept.
         metrics: the run's numbers, each with its bound.
         figures: (caption, `<svg>` element) pairs, in order.
+        runs: the same of single runs, alike; all but the first few are folded.
+        how_to_read: what to know about them.
         replay_html: a complete document, shown in a frame of its own.
+        picture: (height, width, 3), which stands for the replay on paper.
         facts: what the run was made with, such as resolver, versions and seed.
         data: tables of numbers that are not judged, each under its heading.
+        annex: more of them, below the figures.
 
     Raises:
         InputError: metrics of the same name, or a figure that is not one SVG element.
     """
     to_json(metrics)  # refuses names that occur twice
     tables = _metrics(metrics) + _facts(facts or {})
-    body = _replay(replay_html) + f'<div class="tables">{tables}</div>\n'
+    body = _replay(replay_html, picture) + f'<div class="tables">{tables}</div>\n'
     page = _PAGE.format(
         title=html.escape(title),
         summary=html.escape(summary),
         style=files("sims.report").joinpath("page.css").read_text(encoding="utf-8"),
         verdict=_verdict(metrics),
-        body=body + "".join(map(as_html, data)) + _figures(figures),
+        body=body
+        + "".join(map(as_html, data))
+        + cards("Figures", figures)
+        + folded("Runs, level by level", how_to_read, runs)
+        + "".join(map(as_html, annex)),
     )
     Path(path).write_text(page, encoding="utf-8")
 
@@ -116,29 +129,15 @@ def _facts(facts: Mapping[str, str]) -> str:
     )
 
 
-def _replay(document: str | None) -> str:
+def _replay(document: str | None, picture: Image | None) -> str:
     if document is None:
         return ""
+    still = ""
+    if picture is not None:
+        still = f'<img class="printed" alt="The run" src="{data_url(picture)}">'
     return (
         '<section class="card"><iframe title="Replay in three dimensions" '
-        f'srcdoc="{html.escape(document)}"></iframe>'
+        f'srcdoc="{html.escape(document)}"></iframe>{still}'
         '<p class="printed">The replay moves: open this page in a browser to see it.'
         "</p></section>\n"
     )
-
-
-def _figures(figures: Sequence[tuple[str, str]]) -> str:
-    if not figures:
-        return ""
-    cards = "\n".join(_figure(caption, svg) for caption, svg in figures)
-    return f'<h2>Figures</h2>\n<div class="figures">\n{cards}\n</div>'
-
-
-def _figure(caption: str, svg: str) -> str:
-    element = svg.strip()
-    if not (element.startswith("<svg") and element.endswith("</svg>")):
-        raise InputError(f"the figure '{caption}' is not one <svg> element.")
-    if "<script" in element.lower():
-        raise InputError(f"the figure '{caption}' holds a script.")
-    text = html.escape(caption)
-    return f'<figure class="card">{element}<figcaption>{text}</figcaption></figure>'

@@ -12,7 +12,6 @@ import html
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,58 +20,25 @@ from typing import Any, Final, final
 
 import mujoco
 import numpy as np
-from matplotlib.colors import to_hex
 from numpy.typing import ArrayLike
 
-from sims.report.axes import PALETTE
 from sims.report.motion import Motion, frames, play_back, track
+from sims.report.overlays import (
+    Arrow,
+    Marker,
+    Trace,
+    arrows_of,
+    marker_of,
+    trace_of,
+)
 from sims.report.shapes import Store, geoms, soft_bodies
-from sims.report.thinning import thin_curve
 from wbc.arrays import Array, frozen
 from wbc.errors import InputError, WbcError
 
-__all__ = ["Marker", "Replay", "Trace"]
+__all__ = ["Arrow", "Marker", "Replay", "Trace"]
 
 _FIELD_OF_VIEW: Final = 40.0  # [deg], vertical
-_TRACE_POINTS: Final = 500
-
-
-@final
-@dataclass(frozen=True, slots=True, eq=False)
-class Trace:
-    """A line in space, such as a seam or the path of a tool.
-
-    Attributes:
-        name: what the legend calls it.
-        points: (K, 3) [m], in the world.
-        colour: any colour that matplotlib knows.
-        width: diameter of the line [m].
-        times: (K,) [s] in the recording's time, if the line grows as it is drawn.
-    """
-
-    name: str
-    points: ArrayLike
-    colour: str = PALETTE[1]
-    width: float = 0.004
-    times: ArrayLike | None = None
-
-
-@final
-@dataclass(frozen=True, slots=True, eq=False)
-class Marker:
-    """A ball in space, such as a target.
-
-    Attributes:
-        name: what the legend calls it.
-        points: (3,) [m] fixed in the world, or (T, 3) [m], one for each sample.
-        colour: any colour that matplotlib knows.
-        radius: of the ball [m].
-    """
-
-    name: str
-    points: ArrayLike
-    colour: str = PALETTE[2]
-    radius: float = 0.012
+_SCRIPTS: Final = ("scene.js", "shapes.js", "overlays.js", "room.js", "player.js")
 
 
 @final
@@ -85,6 +51,8 @@ class Replay:
         qpos: (T, nq), MuJoCo's order of positions.
         traces: lines to draw.
         markers: balls to draw.
+        arrows: forces to draw, and other vectors.
+        chapters: (name, begin [s]) of parts, in order; the page shows where it is.
         camera: where to look from; by default everything is in view.
         mocap: (T, nmocap, 7) position [m] and quaternion w x y z of mocap bodies.
         rate: frames that the page stores for each second of the recording [1/s].
@@ -102,6 +70,8 @@ class Replay:
         *,
         traces: Sequence[Trace] = (),
         markers: Sequence[Marker] = (),
+        arrows: Sequence[Arrow] = (),
+        chapters: Sequence[tuple[str, float]] = (),
         camera: mujoco.MjvCamera | None = None,
         mocap: ArrayLike | None = None,
         rate: float = 30.0,
@@ -118,11 +88,16 @@ class Replay:
         poses = None
         if mocap is not None:
             poses = frozen(mocap, (count, model.nmocap, 7), "mocap")[kept]
-        self._start = float(stamps[0])
         self._motion = play_back(model, stamps[kept], states[kept], poses)
         self._store = Store()
-        self._scene = self._describe(model, traces, camera)
-        self._scene["markers"] = [self._marker(m, count, kept) for m in markers]
+        self._scene = self._describe(model, camera)
+        start, store = float(stamps[0]), self._store
+        self._scene |= {
+            "traces": [trace_of(t, count, kept, start, store) for t in traces],
+            "markers": [marker_of(m, count, kept, store) for m in markers],
+            "chapters": [{"name": n, "begin": begin - start} for n, begin in chapters],
+            "arrows": arrows_of(arrows, count, kept, _radius(self._motion), store),
+        }
         self._data = self._store.text()
 
     @property
@@ -132,21 +107,17 @@ class Replay:
 
     def html(self) -> str:
         """A complete document, fit for a file or for the `srcdoc` of an iframe."""
-        here = files("sims.report")
-        template = Template(here.joinpath("replay.html").read_text(encoding="utf-8"))
+        template = Template(_own("replay.html"))
         return template.substitute(
             viewer=_viewer_script(),
             scene=json.dumps(self._scene, allow_nan=False).replace("<", "\\u003c"),
             data=self._data,
-            player=here.joinpath("replay.js").read_text(encoding="utf-8"),
+            player="\n".join(map(_own, _SCRIPTS)),
             legend=self._legend(),
         )
 
     def _describe(
-        self,
-        model: mujoco.MjModel,
-        traces: Sequence[Trace],
-        camera: mujoco.MjvCamera | None,
+        self, model: mujoco.MjModel, camera: mujoco.MjvCamera | None
     ) -> dict[str, Any]:
         store, motion = self._store, self._motion
         shapes, undrawn = geoms(model, store)
@@ -160,48 +131,23 @@ class Replay:
             "bodies": bodies,
             "geoms": shapes,
             "soft": soft,
-            "traces": [self._trace(trace) for trace in traces],
             "undrawn": undrawn + undrawn_soft,
             "view": _view(motion, camera),
             "room": {"low": motion.low.tolist(), "high": motion.high.tolist()},
         }
 
-    def _trace(self, trace: Trace) -> dict[str, Any]:
-        count = len(np.asarray(trace.points))
-        points = frozen(trace.points, (count, 3), f"points of trace '{trace.name}'")
-        if not count:
-            raise InputError(f"trace '{trace.name}' has no points.")
-        moved = np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-6
-        distinct = np.flatnonzero(np.append(True, moved))
-        kept = distinct[thin_curve(points[distinct], _TRACE_POINTS)]
-        line = {
-            "name": trace.name,
-            "colour": to_hex(trace.colour),
-            "width": trace.width,
-            "points": self._store.add(points[kept], "f4"),
-        }
-        if trace.times is not None:
-            stamps = frozen(trace.times, (count,), f"times of trace '{trace.name}'")
-            line["times"] = self._store.add(stamps[kept] - self._start, "f4")
-        return line
-
-    def _marker(self, marker: Marker, count: int, kept: Any) -> dict[str, Any]:
-        what = f"points of marker '{marker.name}'"
-        if np.ndim(marker.points) == 1:
-            points = frozen(marker.points, (3,), what)[None]
-        else:
-            points = frozen(marker.points, (count, 3), what)[kept]
-        return {
-            "name": marker.name,
-            "colour": to_hex(marker.colour),
-            "radius": marker.radius,
-            "position": track(points, self._store),
-        }
-
     def _legend(self) -> str:
+        scene = self._scene
         entries = [
             f'<li><i style="background:{one["colour"]}"></i>{html.escape(one["name"])}'
-            for one in [*self._scene["traces"], *self._scene["markers"]]
+            for one in [*scene["traces"], *scene["markers"]]
+            if one.get("listed", True)
+        ]
+        entries += [
+            f'<li><b style="color:{one["colour"]}">&#x2794;</b>'
+            f'{html.escape(one["name"])} <output class="size"></output> '
+            f"<small>1 cm = {one['perCm']:g} {html.escape(one['unit'])}</small>"
+            for one in scene["arrows"]
         ]
         if self._scene["undrawn"]:
             names = html.escape(", ".join(self._scene["undrawn"]))
@@ -220,10 +166,15 @@ def _body(
     }
 
 
+def _radius(motion: Motion) -> float:
+    """Of the room that everything visible takes [m]."""
+    return max(0.5 * float(np.linalg.norm(motion.high - motion.low)), 0.05)
+
+
 def _view(motion: Motion, camera: mujoco.MjvCamera | None) -> dict[str, Any]:
     """Camera and target [m]; without a camera, all that moves or stands is in view."""
     target = 0.5 * (motion.low + motion.high)
-    radius = max(0.5 * float(np.linalg.norm(motion.high - motion.low)), 0.05)
+    radius = _radius(motion)
     azimuth, elevation = math.radians(130.0), math.radians(-20.0)
     distance = 0.8 * radius / math.sin(math.radians(0.5 * _FIELD_OF_VIEW))
     if camera is not None:
@@ -237,6 +188,11 @@ def _view(motion: Motion, camera: mujoco.MjvCamera | None) -> dict[str, Any]:
         "position": (target - distance * np.array(forward)).tolist(),
         "angle": _FIELD_OF_VIEW,
     }
+
+
+def _own(name: str) -> str:
+    """Text of a file of the player."""
+    return files("sims.report").joinpath("player", name).read_text(encoding="utf-8")
 
 
 def _viewer_script() -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import copy
+import io
 import os
 import sys
 from pathlib import Path
@@ -16,7 +18,7 @@ from wbc.errors import InputError, WbcError
 if TYPE_CHECKING:
     import mujoco
 
-__all__ = ["Image", "NoDisplay", "render", "write_png"]
+__all__ = ["Image", "NoDisplay", "data_url", "render", "write_png"]
 
 Image: TypeAlias = NDArray[np.uint8]
 
@@ -72,6 +74,16 @@ def write_png(path: str | Path, image: Image) -> None:
             f"{pixels.dtype}."
         )
     PIL.Image.fromarray(pixels).save(path, format="PNG")
+
+
+def data_url(image: Image) -> str:
+    """A picture (height, width, 3) as a JPEG within the text of a page."""
+    import PIL.Image
+
+    buffer = io.BytesIO()
+    PIL.Image.fromarray(image).save(buffer, format="JPEG", quality=85)
+    packed = base64.b64encode(buffer.getvalue()).decode("ascii")
+    return f"data:image/jpeg;base64,{packed}"
 
 
 def _context(width: int, height: int) -> Any:

@@ -10,9 +10,10 @@ import numpy as np
 from robots import racer
 from sims import welding
 from sims.cell import ArmCell
+from sims.course import Course
 from sims.demo import Demo, Options, Outcome
 from sims.log import Log, shared_metrics
-from sims.report.replay import Replay, Trace
+from sims.report.replay import Arrow, Replay, Trace
 from sims.report.snapshot import Image, render
 from sims.resolvers import make_resolver
 from sims.run import run
@@ -27,6 +28,7 @@ __all__ = ["DEMO"]
 
 PAUSE = 0.5
 """Between two jobs in the replay [s]."""
+MILLI = 1e3
 
 
 def _run(options: Options) -> Outcome:
@@ -57,6 +59,7 @@ def _run(options: Options) -> Outcome:
         replay=lambda: _replay(cell.model, shown),
         picture=lambda: _picture(cell),
         facts={"robot": repr(arm), "simulated time": _simulated(logs)},
+        courses={name: Course.of(log) for name, log in logs.items()},
     )
 
 
@@ -82,20 +85,32 @@ def _simulated(logs: dict[str, Log]) -> str:
 
 def _replay(model: mujoco.MjModel, logs: dict[str, Log]) -> str:
     """All jobs in a row, with what the tip has welded growing as it goes."""
-    times, qpos, traces, begin = [], [], [], 0.0
+    times, traces, chapters, begin = [], [], [], 0.0
     for name, log in logs.items():
         t = begin + log.t - log.t[0]
         times.append(t)
-        qpos.append(log.qpos)
+        chapters.append((name, begin))
         bead = log.p[TIP][::20]
-        traces.append(Trace(f"tip: {name}", bead, "#D55E00", 0.006, t[::20]))
+        way = "way of the tip" if not begin else f"tip: {name}"
+        traces.append(Trace(way, bead, "#D55E00", 0.006, t[::20], listed=not begin))
         begin = t[-1] + PAUSE
     lines = [np.array([SEAM.at(s).c[0] for s in (0.0, SEAM.length)])]
     lines.append(np.array([CURVE.at(s).c[0] for s in np.linspace(0, CURVE.length, 60)]))
     for name, line in zip(("seam", "saddle"), lines, strict=True):
         traces.append(Trace(name, line, "#0072B2", 0.003))
-    stamps, states = np.concatenate(times), np.concatenate(qpos)
-    return Replay(model, stamps, states, traces=traces, camera=_camera()).html()
+    tips = [log.p[TIP] for log in logs.values()]
+    dt = model.opt.timestep
+    speeds = [np.diff(p, axis=0, prepend=p[:1]) / dt * MILLI for p in tips]
+    drawn = np.concatenate(tips), np.concatenate(speeds)
+    return Replay(
+        model,
+        np.concatenate(times),
+        np.concatenate([log.qpos for log in logs.values()]),
+        traces=traces,
+        arrows=[Arrow("speed of the tip", *drawn, "mm/s")],
+        chapters=chapters,
+        camera=_camera(),
+    ).html()
 
 
 def _picture(cell: ArmCell) -> Image:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sims.log import Log
-from sims.report.figures import heat_rows, lines3d, time_series
+from sims.report.figures import lines3d, time_series
 from sims.welding.metrics import across, speed_along, travel_angle
 from sims.welding.parts import CURVE_SPEED, SEAM_SPEED, TIP, TRAVEL
 from sims.welding.workpiece import CURVE, POINT, SEAM
@@ -91,8 +91,4 @@ def _robot(name: str, log: Log) -> list[tuple[str, str]]:
     torques = time_series(
         f"{name}: use of the torque limits", log.t, joints, "share of limit [1]"
     )
-    drawn = [(f"Joint torques of the job '{name}'.", torques)]
-    if log.active:
-        rows = heat_rows(f"{name}: active bounds", log.t, log.active)
-        drawn.append((f"Which limit was active when, in '{name}'.", rows))
-    return drawn
+    return [(f"Joint torques of the job '{name}'.", torques)]

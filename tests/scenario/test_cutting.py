@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import re
+
 import numpy as np
 import pytest
 
@@ -12,6 +15,7 @@ from sims.cutting.layout import Plan
 from sims.cutting.loop import run_job
 from sims.cutting.meat import Meat, Toughness
 from sims.cutting.metrics import guide_error, metrics
+from sims.cutting.playback import GUIDE_WIDTH, interface_lines, replay
 from sims.cutting.scene import PLACE
 from sims.cutting.trial import Trial
 from sims.demo import Options
@@ -76,6 +80,24 @@ def test_a_poor_camera_still_leads_the_knife():
     assert run.job.stopped is None
     assert guide_error(run.record) < 2e-3
     assert run.cell.tissue.muscle_cut_length == 0.0
+
+
+def test_the_replay_has_meat_guide_line_and_both_forces_thirty_times_a_second(usual):
+    page = replay(usual)
+    scene = json.loads(re.search(r'id="scene">(.*?)</script>', page, re.DOTALL)[1])
+    assert len(scene["soft"]) == 2
+    assert "guide line in the meat" in {trace["name"] for trace in scene["traces"]}
+    assert {a["name"] for a in scene["arrows"]} == {"knife on meat", "puller on meat"}
+    frames = scene["times"]["count"]
+    assert (frames - 1) / usual.record.coarse_t[-1] >= 30.0 - 1e-6
+
+
+def test_the_guide_line_of_the_replay_is_where_the_knife_is_measured_against(usual):
+    """A row of links and a surface through all differ by less than it is thick."""
+    lines, guide = interface_lines(usual), usual.record.guide
+    seen = np.flatnonzero(np.isfinite(guide[:, 0]))
+    drawn = [np.interp(guide[j, 0], lines[j, :, 0], lines[j, :, 1]) for j in seen]
+    assert np.abs(drawn - guide[seen, 1]).max() < 0.5 * GUIDE_WIDTH
 
 
 # -------------------------------------------------------------------- what goes wrong

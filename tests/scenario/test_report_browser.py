@@ -1,7 +1,8 @@
+"""Reports in a headless browser: nothing complains, and the replay moves."""
+
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -10,16 +11,15 @@ import mujoco
 import numpy as np
 import pytest
 
+from sims.cli import main
 from sims.metrics import Metric
+from sims.registry import cell_names
 from sims.report.figures import time_series
 from sims.report.page import write_report
 from sims.report.replay import Replay, Trace
+from tests.browser import BROWSER, FLAGS, HARMLESS, MISSING, Browser
 
-NAMES = ("chromium", "chromium-browser", "google-chrome")
-BROWSER = next((path for path in map(shutil.which, NAMES) if path), None)
-pytestmark = pytest.mark.skipif(
-    BROWSER is None, reason=f"no browser on PATH: none of {', '.join(NAMES)}"
-)
+pytestmark = pytest.mark.skipif(BROWSER is None, reason=MISSING)
 
 ARM = """
 <mujoco>
@@ -37,23 +37,49 @@ ARM = """
 </mujoco>
 """
 WIDTH, HEIGHT = 900, 600
-FLAGS = [
-    "--headless=new",
-    "--no-sandbox",
-    "--disable-dev-shm-usage",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--enable-logging=stderr",
-    "--hide-scrollbars",
-    f"--window-size={WIDTH},{HEIGHT}",
-]
-HARMLESS = ("GL Driver Message",)  # remarks of the software renderer on its speed
+VISIBLE = ["--enable-logging=stderr", f"--window-size={WIDTH},{HEIGHT}"]
+SHORT = {"cutting": 3.0, "welding": 1.5, "contact": 1.0}
+"""Longest time of each job [s], enough for something to move; 0.5 s elsewhere."""
+MOMENTS = (0.02, 0.5, 1.0)
+SMALL = (320, 180)
+LOOK = """
+new Promise((done) => {
+  function begin() {
+    const inside = document.querySelector("iframe").contentWindow;
+    const canvas = inside.document.querySelector("#pane canvas");
+    const slider = inside.document.getElementById("time");
+    const small = document.createElement("canvas");
+    [small.width, small.height] = SMALL;
+    const pen = small.getContext("2d", { willReadFrequently: true });
+    const moments = MOMENTS, pictures = [];
+    function look() {
+      slider.value = moments[pictures.length] * slider.max;
+      slider.dispatchEvent(new Event("input"));
+      inside.requestAnimationFrame(() => { // after the viewer's own, in the same frame
+        pen.drawImage(canvas, 0, 0, small.width, small.height);
+        const { data } = pen.getImageData(0, 0, small.width, small.height);
+        pictures.push(Array.from(data));
+        if (pictures.length < moments.length) look(); else done(pictures);
+      });
+    }
+    look();
+  }
+  if (document.readyState === "complete" && location.href !== "about:blank") begin();
+  else window.addEventListener("load", begin);
+})"""
 
 
 def browse(page: Path, *options: str) -> tuple[str, list[str]]:
     """Output of the browser, and what the page wrote to its console."""
     profile = page.parent / "profile"
-    command = [BROWSER, *FLAGS, f"--user-data-dir={profile}", *options, page.as_uri()]
+    command = [
+        BROWSER,
+        *FLAGS,
+        *VISIBLE,
+        f"--user-data-dir={profile}",
+        *options,
+        page.as_uri(),
+    ]
     done = subprocess.run(
         command, capture_output=True, text=True, timeout=120, check=True
     )
@@ -120,3 +146,42 @@ def test_the_time_slider_shows_the_moment_that_it_is_set_to(replay, tmp_path):
         clocks.append(re.search(r'<output id="clock">([^<]*)<', document)[1])
     assert clocks == ["0.50 / 5.99 s", "2.50 / 5.99 s"]
     assert differing(shown[0], shown[1]) > 1000
+
+
+@pytest.fixture(scope="session", params=cell_names())
+def report(tmp_path_factory, request) -> Path:
+    """The report of a short run of a cell."""
+    cell, folder = request.param, tmp_path_factory.mktemp("report")
+    short = ["--duration", str(SHORT.get(cell, 0.5)), "--quiet"]
+    assert main(["run", cell, *short, "--out", str(folder)]) in (0, 1)
+    return folder / "report.html"
+
+
+@pytest.fixture(scope="session")
+def browser(tmp_path_factory):
+    """One browser for all reports."""
+    opened = Browser(tmp_path_factory.mktemp("browser") / "profile", WIDTH, HEIGHT)
+    yield opened
+    opened.close()
+
+
+def test_every_cells_report_opens_silently_and_its_replay_shows_three_moments(
+    report, browser
+):
+    values = {"SMALL": list(SMALL), "MOMENTS": list(MOMENTS)}
+    look = re.sub("SMALL|MOMENTS", lambda name: str(values[name[0]]), LOOK)
+    pictures, complaints = browser.run(report, look)
+    assert complaints == []
+    assert report.stat().st_size < 8_000_000
+    pixels = np.array(pictures, dtype=float) / 255.0
+    first, second, third = pixels.reshape(3, *SMALL[::-1], 4)[..., :3]
+    assert min(map(np.std, (first, second, third))) > 0.1  # a scene, not the sky alone
+    assert min(differing(first, second), differing(second, third)) > 20
+
+
+def test_a_script_that_fails_in_a_frame_of_a_page_is_heard(browser, tmp_path):
+    page = tmp_path / "bad.html"
+    page.write_text('<iframe srcdoc="<script>nothing.here</script>"></iframe>')
+    wait = "new Promise((done) => setTimeout(done, 300))"
+    _, complaints = browser.run(page, wait)
+    assert any("nothing is not defined" in complaint for complaint in complaints)

@@ -8,7 +8,10 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from sims.report.figures import heat_rows, lines3d, time_series, xy
+from sims.course import Course
+from sims.report.figures import lines3d, time_series, xy
+from sims.report.panels import Panel, side_by_side
+from sims.report.runs import run_figure
 from sims.report.thinning import columns, thin_curve, thin_series
 from wbc.errors import InputError
 
@@ -22,13 +25,24 @@ def many_series() -> str:
     return time_series("Torque", TIMES, curves, "torque [N m]", {"limit": 6.0}, spans)
 
 
-def many_rows() -> str:
-    rows = {f"row {i}": NOISE[i] > 1.0 for i in range(7)}
-    return heat_rows("Active", TIMES, rows, spans=[("weld", 5.0, 50.0)])
+def many_panels() -> str:
+    ways = {way: (TIMES, {"a": NOISE[i], "b": NOISE[2]}) for i, way in enumerate("xy")}
+    return side_by_side("Panels", [Panel("force [N]", ways), Panel("way [mm]", ways)])
 
 
-def numbered_rows() -> str:
-    return heat_rows("Multipliers", TIMES, {"a": NOISE[0], "b": NOISE[1]}, "[N m]")
+def many_lanes() -> str:
+    lanes = {(2, "goal"): abs(NOISE[0, ::10]), (1, "limits"): 0.0 * TIMES[::10]}
+    active = {f"level 1: limits: joint{i}": NOISE[i] > 2.0 for i in range(6)}
+    course = Course(
+        t=TIMES,
+        torque=abs(NOISE[0]),
+        speed=abs(NOISE[1]),
+        errors={"goal [m]": abs(NOISE[2])},
+        active=active,
+        sampled=TIMES[::10],
+        shortfall=lanes,
+    )
+    return run_figure("Lanes", {"hqp": course, "nullspace": course})
 
 
 def plane_curves() -> str:
@@ -40,7 +54,7 @@ def space_curves() -> str:
     return lines3d("Path", {"planned": NOISE[:3].T, "measured": NOISE[3:6].T})
 
 
-FIGURES = [many_series, many_rows, numbered_rows, plane_curves, space_curves]
+FIGURES = [many_series, many_panels, many_lanes, plane_curves, space_curves]
 
 
 @pytest.mark.parametrize("draw", FIGURES)
@@ -54,7 +68,7 @@ def test_a_figure_is_one_element_without_date_size_or_foreign_names(draw):
     root = ElementTree.fromstring(svg)
     assert root.tag.endswith("svg")
     assert "width" not in root.attrib
-    assert root.attrib["aria-label"] in ("Torque", "Active", "Multipliers", "Path")
+    assert root.attrib["aria-label"] in ("Torque", "Panels", "Lanes", "Path")
     assert "<metadata" not in svg
     assert "<style" not in svg
     identities = re.findall(r' id="([^"]+)"', svg)
@@ -108,8 +122,8 @@ def test_gaps_and_empty_records_are_drawn_without_complaint():
 def test_shapes_that_do_not_fit_are_refused():
     with pytest.raises(InputError, match="'y' has shape"):
         time_series("t", [0, 1], {"y": [0, 1, 2]}, "y [m]")
-    with pytest.raises(InputError, match="two samples"):
-        heat_rows("t", [0.0], {"a": [True]})
+    with pytest.raises(InputError, match="same ways"):
+        side_by_side("t", [Panel("y", {"a": ([0], {})}), Panel("y", {"b": ([0], {})})])
     with pytest.raises(InputError, match=r"\(N, 3\)"):
         lines3d("t", {"a": np.zeros((4, 2))})
 
