@@ -99,6 +99,7 @@ class Structure:
         after: a structure that comes before it in the same table.
 
     Attributes:
+        size: number of arrays, with those before.
         at: for compiled functions: address of the table -> structure.
     """
 
@@ -113,6 +114,7 @@ class Structure:
             fields[name] = len(self._shapes), kind
             self._numbers[name] = len(self._shapes), number
             self._shapes.append(shape)
+        self.size = len(self._shapes)
         self.at: Any = _reader(_Kind(f"{of.__module__}.{of.__qualname__}", fields))
 
     def layout(self, sizes: Mapping[str, int]) -> tuple[IntArray, int]:

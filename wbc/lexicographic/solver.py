@@ -15,16 +15,18 @@ from wbc.lexicographic.multipliers import ROUND_OFF, fault
 from wbc.lexicographic.sweep import sweep, take_point
 from wbc.lexicographic.vectors import copy, dot, length
 from wbc.lexicographic.work import (
+    DUAL,
     MOST,
     SETTLED,
+    WORK,
     Dual,
-    Memory,
     Work,
     dual_at,
     set_problem,
     work_at,
 )
 from wbc.linalg import RANK_TOLERANCE
+from wbc.memory import Memory
 
 __all__ = ["Lexicographic", "lexicographic"]
 
@@ -68,8 +70,9 @@ class Lexicographic:
         tolerance: float = RANK_TOLERANCE,
         most: int | None = None,
     ) -> None:
-        self._memory = Memory(sizes, n)
+        self._memory = Memory(sizes, n, WORK, DUAL)
         self.address, memory = self._memory.address, self._memory
+        memory["level"][:] = np.repeat(np.arange(len(sizes)), sizes)
         memory["tolerance"][0] = tolerance
         many = 50 + 20 * (int(sum(sizes)) + n)
         self._options, self._first = memory["options"], memory["first"]

@@ -2,27 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache
-from typing import Annotated, Any, Final, NamedTuple, final
-
-import numpy as np
+from typing import Annotated, Any, Final, NamedTuple
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.pointers import address_of
 from wbc.structure import ENTRIES, Structure
 
 __all__ = [
-    "MOST",
-    "SETTLED",
-    "Dual",
-    "Memory",
-    "Work",
-    "dual_at",
-    "set_problem",
-    "work_at",
-]
+    "DUAL", "MOST", "SETTLED", "WORK", "Dual", "Work", "dual_at",
+    "set_problem", "work_at",
+]  # fmt: skip
 
 SETTLED, MOST = 0, 1
 """The options: whether the working set is a solution's, and how many steps a method
@@ -130,51 +119,15 @@ class Dual(NamedTuple):
     rate: Annotated[Array, "m"]
 
 
-_WORK: Final = Structure(Work)
-_DUAL: Final = Structure(Dual, after=_WORK)
-work_at: Final[Any] = _WORK.at
-dual_at: Final[Any] = _DUAL.at
+WORK: Final = Structure(Work)
+DUAL: Final = Structure(Dual, after=WORK)
+work_at: Final[Any] = WORK.at
+dual_at: Final[Any] = DUAL.at
 
 
 @inner
 def set_problem(w: Work, A: Array, lower: Array, upper: Array) -> None:
     """Let the structure's problem be these arrays."""
     w.table[0] = A.ctypes.data
-    w.table[3] = lower.ctypes.data
-    w.table[6] = upper.ctypes.data
-
-
-@final
-class Memory:
-    """All arrays, in one block.
-
-    Args:
-        sizes: number of rows of every level.
-        n: number of unknowns.
-
-    Attributes:
-        address: of the table of the arrays, for `work_at` and `dual_at`.
-    """
-
-    __slots__ = ("_block", "_layout", "address")
-
-    def __init__(self, sizes: Sequence[int], n: int) -> None:
-        self._layout, size = _layout(len(sizes), int(sum(sizes)), n)
-        self._block = np.zeros(size)
-        table = self["table"]
-        table[:] = self._layout.ravel()
-        table[::ENTRIES] += address_of(self._block)
-        self.address = address_of(table)
-        self["start"][1:] = np.cumsum(np.array(sizes, np.int_))
-        self["level"][:] = np.repeat(np.arange(len(sizes)), sizes)
-
-    def __getitem__(self, name: str) -> Any:
-        """An array of `Work`, as a view."""
-        return _WORK.view(name, self._block, self._layout)
-
-
-@lru_cache(maxsize=64)
-def _layout(p: int, m: int, n: int) -> tuple[IntArray, int]:
-    words = {"p": p, "p + 1": p + 1, "m": m, "n": n, "n + 1": n + 1, "1": 1, "2": 2}
-    count = len(Work._fields) + len(Dual._fields)
-    return _DUAL.layout(words | {"table": ENTRIES * count})
+    w.table[ENTRIES] = lower.ctypes.data
+    w.table[2 * ENTRIES] = upper.ctypes.data

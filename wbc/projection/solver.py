@@ -10,8 +10,9 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.compiled import announce
 from wbc.damped import DampedInverse
+from wbc.memory import Memory
 from wbc.projection.active import saturate
-from wbc.projection.work import Memory
+from wbc.projection.work import WORK
 
 __all__ = ["Projection"]
 
@@ -41,7 +42,7 @@ class Projection:
         damping: DampedInverse | None = None,
         alone: bool = False,
     ) -> None:
-        self._memory = Memory(sizes, n)
+        self._memory = Memory(sizes, n, WORK)
         memory = self._memory
         self.y, self.side, self.ranks = memory["y"], memory["side"], memory["ranks"]
         self.directions = memory["Z"]

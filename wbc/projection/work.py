@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache
-from typing import Annotated, Any, Final, NamedTuple, final
-
-import numpy as np
+from typing import Annotated, Any, Final, NamedTuple
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.pointers import address_of
 from wbc.structure import ENTRIES, Structure
 
-__all__ = ["Memory", "Work", "set_problem", "work_at"]
+__all__ = ["WORK", "Work", "set_problem", "work_at"]
 
 
 class Work(NamedTuple):
@@ -80,8 +75,8 @@ class Work(NamedTuple):
     spare: Annotated[Array, "2, n"]
 
 
-_WORK: Final = Structure(Work)
-work_at: Final[Any] = _WORK.at
+WORK: Final = Structure(Work)
+work_at: Final[Any] = WORK.at
 
 
 @inner
@@ -91,37 +86,3 @@ def set_problem(w: Work, A: Array, lower: Array, upper: Array, rest: Array) -> N
     w.table[ENTRIES] = lower.ctypes.data
     w.table[2 * ENTRIES] = upper.ctypes.data
     w.table[3 * ENTRIES] = rest.ctypes.data
-
-
-@final
-class Memory:
-    """All arrays, in one block.
-
-    Args:
-        sizes: number of rows of every level.
-        n: number of unknowns.
-
-    Attributes:
-        address: of the table of the arrays, for `work_at`.
-    """
-
-    __slots__ = ("_block", "_layout", "address")
-
-    def __init__(self, sizes: Sequence[int], n: int) -> None:
-        self._layout, size = _layout(len(sizes), int(sum(sizes)), n)
-        self._block = np.zeros(size)
-        table = self["table"]
-        table[:] = self._layout.ravel()
-        table[::ENTRIES] += address_of(self._block)
-        self.address = address_of(table)
-        self["start"][1:] = np.cumsum(np.array(sizes, np.int_))
-
-    def __getitem__(self, name: str) -> Any:
-        """An array of `Work`, as a view."""
-        return _WORK.view(name, self._block, self._layout)
-
-
-@lru_cache(maxsize=64)
-def _layout(p: int, m: int, n: int) -> tuple[IntArray, int]:
-    words = {"p": p, "p + 1": p + 1, "2 p + 1": 2 * p + 1, "m": m, "n": n}
-    return _WORK.layout(words | {"1": 1, "2": 2, "table": ENTRIES * len(Work._fields)})
