@@ -137,13 +137,13 @@ def _direction(w: Work, d: Dual, row: int, sign: int, soft: float) -> float:
     for i in range(count):
         r = chosen[i]
         share = sign * held[r] * along(w, d, r, P[row])
-        new[i] = (share - dot(L[i], new, 0, i)) / L[i, i]
+        new[i] = (share - dot(L[i], new, 0, i)) * L[i, i]
         left -= new[i] * new[i]
     copy(new[:count], rate)
     for j in range(n):
         way[j] = sign * P[row, j]
     for i in range(count - 1, -1, -1):
-        rate[i] /= L[i, i]
+        rate[i] *= L[i, i]
         add_scaled(-rate[i], L[i], rate, 0, i)
         add_scaled(-rate[i] * held[chosen[i]], P[chosen[i]], way, 0, n)
     return left if left > DEPENDENT * whole else 0.0
@@ -184,7 +184,7 @@ def _step(
         multiplier[chosen[i]] -= step * rate[i]
     multiplier[row] += step
     if gone < 0:
-        d.L[count, count] = np.sqrt(left)
+        d.L[count, count] = 1.0 / np.sqrt(left)
         chosen[count] = row
         held[row] = sign
         d.number[0] = count + 1
@@ -201,10 +201,12 @@ def _drop(d: Dual, gone: int) -> None:
     for i in range(gone, count):
         chosen[i] = chosen[i + 1]
         copy(L[i + 1, : i + 2], L[i])
+        L[i, i + 1] = 1.0 / L[i, i + 1]
     for j in range(gone, count):
-        end = np.hypot(L[j, j], L[j, j + 1])
+        end = np.sqrt(L[j, j] * L[j, j] + L[j, j + 1] * L[j, j + 1])
         cos, sin = L[j, j] / end, L[j, j + 1] / end
-        for i in range(j, count):
+        L[j, j] = 1.0 / end
+        for i in range(j + 1, count):
             a, b = L[i, j], L[i, j + 1]
             L[i, j], L[i, j + 1] = cos * a + sin * b, cos * b - sin * a
     d.number[0] = count

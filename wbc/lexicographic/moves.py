@@ -58,9 +58,9 @@ def make_basis(w: Work, d: Dual, base: int) -> None:
 def _apply_metric(R: Array, y: Array, price: float) -> None:
     """Y <- price (R^T R)^-1 y."""
     for j in range(y.size):
-        y[j] = (y[j] - dot(R[j], y, 0, j)) / R[j, j]
+        y[j] = (y[j] - dot(R[j], y, 0, j)) * R[j, j]
     for j in range(y.size - 1, -1, -1):
-        y[j] /= R[j, j]
+        y[j] *= R[j, j]
         add_scaled(-y[j], R[j], y, 0, j)
     for j in range(y.size):
         y[j] *= price

@@ -229,7 +229,7 @@ def _least_squares(
     y = c[taken : taken + rank]
     copy(R[rank, :rank], y)
     for j in range(rank - 1, -1, -1):
-        y[j] /= R[j, j]
+        y[j] *= R[j, j]
         add_scaled(-y[j], R[j], y, 0, j)
     for r in rows:
         slack[r] -= dot(W[r], c, taken, taken + rank)
@@ -239,7 +239,11 @@ def _least_squares(
 def factorise(
     W: Array, slack: Array, R: Array, rows: IntArray, taken: int, rank: int
 ) -> None:
-    """Householder's QR of the level's factor and its slack; R holds columns as rows."""
+    """Householder's QR of the level's factor and its slack.
+
+    R holds columns as rows, and of its diagonal the reciprocals: it is solved with many
+    times, and a division takes as long as four multiplications in a row.
+    """
     count = rows.size
     for q in range(count):
         for j in range(rank):
@@ -254,4 +258,4 @@ def factorise(
         beta = -1.0 / (end * v[j])
         for i in range(j + 1, rank + 1):
             add_scaled(-beta * dot(R[i], v, j, count), v, R[i], j, count)
-        v[j] = end
+        v[j] = 1.0 / end

@@ -44,7 +44,8 @@ class Work(NamedTuple):
         size: (m,) norm of every row; 0 where its level's scale drowns it.
         W: (m, n) working rows in the coordinates c.
         V: (n, n) the reflectors' vectors, one a row.
-        factor: (n + 1, m) QR of a level's factor, transposed, and its slack.
+        factor: (n + 1, m) QR of a level's factor, transposed, reciprocals on its
+            diagonal, and its slack.
         beta: (n,) factors of the reflectors: I - beta v v^T.
         c: (n,) coordinates of the solution.
         x: (n,) the solution.
@@ -97,7 +98,8 @@ class Dual(NamedTuple):
         column: (m,) the unknown that a row bounds; -1 if it has not just one.
         P: (m, n) moves: how x answers to a force along a row.
         Z: (n, n) columns of Q, as rows, where a level determines all that was left.
-        L: (m, m) Cholesky factor of the rows held, in the level's metric.
+        L: (m, m) Cholesky factor of the rows held, in the level's metric, with the
+            reciprocals of its diagonal.
         point: (n,) its x.
         way: (n,) direction of a step.
         multiplier: (m,) of the rows.
