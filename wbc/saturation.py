@@ -35,7 +35,10 @@ class Saturation(Solver):
     ) -> None:
         self._stack, self._damping, self._kinetic = stack, damping, kinetic
         sizes, n = [where.stop - where.start for where in stack.levels], stack.robot.nv
-        self._projection = Projection(sizes, n, damping, alone)
+        tasks = np.zeros(stack.lower.size, np.int_)
+        for term in stack.terms:
+            tasks[term.where] = term.where.start
+        self._projection = Projection(sizes, n, damping, alone, tasks.tolist())
         self._exact = Lexicographic(sizes, n)
         self._A = stack.Ay if kinetic else stack.A
         self._nowhere = np.zeros(n)
@@ -54,7 +57,8 @@ class Saturation(Solver):
         if not finite(y):
             raise SolverError("the projection gave a result that is not finite.")
         vdot = stack.acceleration(y) if self._kinetic else y.copy()
-        return Answer(vdot, projection.ranks.copy(), status)
+        ranks = projection.ranks.copy()
+        return Answer(vdot, ranks, status, kinetic=self._kinetic)
 
     def _hold_strict(self) -> None:
         """Where saturation goes round in circles: hold what the strict QP holds.

@@ -52,7 +52,7 @@ def bars(study: Study) -> list[Metric]:
                 continue
             gap = study.worst("gap", name, limits=limits)
             metric = f"{key}_gap_{when}_relative"
-            if name.startswith("hqp") or (name in STRICT and not limits):
+            if is_strict(name):
                 judged.append(Metric(metric, gap, SOUND))
             elif (name in ("nullspace:uf", "weighted")) or (name == LOCKING and limits):
                 judged.append(Metric(metric, gap, SHORT, ">="))

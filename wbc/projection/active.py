@@ -36,9 +36,12 @@ def saturate(
     w = work_at(address)
     set_problem(w, A, lower, upper, rest)
     m, n = A.shape
+    w.bounding[:] = 0
     for r in range(m):
         if lower[r] == upper[r]:
             w.side[r] = 0
+        else:
+            w.bounding[w.task[r]] = 1
     most: int = 2 * n + 4 if release else m + 1
     for count in range(1, most + 1):
         project(w)

@@ -66,8 +66,9 @@ def _list(w: Work, k: int, held: bool, begin: int) -> int:
     """List the rows of a block in `order`; index behind them."""
     end = begin
     for r in range(w.start[k], w.start[k + 1]):
-        of_block = w.side[r] != 0 if held else w.lower[r] == w.upper[r]
-        if of_block:
+        equal = w.lower[r] == w.upper[r]
+        bounding = w.bounding[w.task[r]] != 0
+        if (w.side[r] != 0 or (equal and bounding)) if held else equal and not bounding:
             w.order[end] = r
             end += 1
     return end

@@ -26,6 +26,9 @@ class Projection:
         n: number of unknowns.
         damping: of the levels' inverses; bounds are always inverted exactly.
         alone: solve each level without regard to those above, then project (UF).
+        tasks: (m,) first row of the task that each row belongs to; by default each row
+            is a task. An equality of a task that bounds other rows is a bound without
+            room, and counts as one.
 
     Attributes:
         y: (n,) the result of the last call; overwritten by the next.
@@ -41,12 +44,14 @@ class Projection:
         n: int,
         damping: DampedInverse | None = None,
         alone: bool = False,
+        tasks: Sequence[int] | None = None,
     ) -> None:
         self._memory = Memory(sizes, n, WORK)
         memory = self._memory
         self.y, self.side, self.ranks = memory["y"], memory["side"], memory["ranks"]
         self.directions = memory["Z"]
         memory["alone"][0] = alone
+        memory["task"][:] = np.arange(self.side.size) if tasks is None else tasks
         memory["damping"][:] = (
             (1.0, 0.0) if damping is None else (damping.threshold, damping.factor)
         )

@@ -14,7 +14,8 @@ __all__ = ["WORK", "Work", "set_problem", "work_at"]
 class Work(NamedTuple):
     """A problem, the law, and everything that a solve writes.
 
-    A block is the held bounds of a level, or its equalities. Direction i is row i of Z;
+    A block is the held bounds of a level, or its equalities. A bound that has closed to
+    a point is held, and no equality. Direction i is row i of Z;
     block c owns the directions first[c] to first[c + 1].
 
     Attributes:
@@ -25,6 +26,8 @@ class Work(NamedTuple):
         table: where these four lie, as `Structure` has it.
         alone: (1,) whether each level is solved without regard to those above (UF).
         start: (p + 1,) first row of every level, and the number of rows.
+        task: (m,) first row of the task that each row belongs to.
+        bounding: (m,) at these, whether the task has rows whose bounds leave room.
         side: (m,) bounds that are held: 1 at upper, -1 at lower, 0 for other rows.
         undecided: (m,) held bounds that no level has pulled at yet.
         order: (m,) rows of the blocks, one block after the other.
@@ -54,6 +57,8 @@ class Work(NamedTuple):
     alone: Annotated[IntArray, "1"]
     damping: Annotated[Array, "2"]
     start: Annotated[IntArray, "p + 1"]
+    task: Annotated[IntArray, "m"]
+    bounding: Annotated[IntArray, "m"]
     side: Annotated[IntArray, "m"]
     undecided: Annotated[IntArray, "m"]
     order: Annotated[IntArray, "m"]
