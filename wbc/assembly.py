@@ -7,7 +7,13 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.compiled import compiled, inner
 
-__all__ = ["assemble", "back_substitute", "finite", "inverse_dynamics", "measured"]
+__all__ = [
+    "assemble", "back_substitute", "finite", "inverse_dynamics", "kept", "measured",
+]  # fmt: skip
+
+BEYOND, TINY = 1e-4, 1e-8
+"""Shares of a torque's bound and of the largest torque; outside by more is no
+round-off."""
 
 
 @compiled
@@ -130,3 +136,26 @@ def inverse_dynamics(M: Array, h: Array, vdot: Array, tau: Array) -> bool:
         for j in range(n):
             tau[i] += M[i, j] * vdot[j]
     return finite(tau)
+
+
+@compiled
+def kept(raw: Array, bands: Array, rows: int, tau: Array) -> bool:
+    """Whether torques tau (n,) keep the bounds of the first so many rows on them.
+
+    Rows that forbid rest are passed over. What is more than `BEYOND` outside is no
+    round-off of a solver: the numbers were too large for it.
+    """
+    largest = 0.0
+    for i in range(tau.size):
+        largest = max(largest, abs(tau[i]))
+    for r in range(rows):
+        lower, upper = bands[3, r], bands[4, r]
+        if lower > 0.0 or upper < 0.0:
+            continue
+        value = 0.0
+        for j in range(tau.size):
+            value += raw[r, j] * tau[j]
+        bound = upper if value > 0.0 else -lower
+        if abs(value) > bound * (1.0 + BEYOND) + TINY * (1.0 + largest):
+            return False
+    return True

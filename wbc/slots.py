@@ -15,9 +15,11 @@ PROGRAM, GAINS, POINTERS, CONSTANTS, BLOCKS, JACOBIAN, SCRATCH = range(14, 21)
 """Of what compiled tasks read and write."""
 SOLVER = 21
 """Of the table of the solver's memory."""
-SIZE = 22
+GUARDED = 22
+"""Number of rows on top that bound torques alone, and so can always be kept."""
+SIZE = 23
 
-SOLVED, NOT_POSITIVE, UNSOLVED, NOT_FINITE = -1, -2, -3, -4
+SOLVED, NOT_POSITIVE, UNSOLVED, NOT_FINITE, BEYOND = -1, -2, -3, -4, -5
 """How a tick can end, besides with the index of a row that is not finite: well; with
 an inertia that is none; with the best point of a solver out of iterations; with a
-torque that is not finite."""
+torque that is not finite, or beyond a bound that could be kept."""

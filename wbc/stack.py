@@ -8,7 +8,7 @@ import numpy as np
 
 from wbc import slots
 from wbc.arrays import Array
-from wbc.assembly import back_substitute, inverse_dynamics
+from wbc.assembly import back_substitute, inverse_dynamics, kept
 from wbc.binding import register
 from wbc.compiled import announce
 from wbc.errors import InputError, ModelError, SolverError
@@ -148,6 +148,9 @@ class Stack:
         self._table[slots.VDOT_ROWS : slots.L_INV + 1] = [
             address_of(array) for array in (self.A, self.Ay, self._bounds, self.L_inv)
         ]
+        on_top = [term for term in self.terms if term.level == 0]
+        if len(on_top) == 1 and on_top[0].task.space == "torque":
+            self._table[slots.GUARDED] = on_top[0].where.stop
 
     def update(self, state: State) -> None:
         """Rewrite all rows at this state.
@@ -176,7 +179,8 @@ class Stack:
             whether the solver came to an end.
 
         Raises:
-            ModelError, SolverError: as for `update`, or a torque is not finite.
+            ModelError, SolverError: as for `update`, or a torque is not finite or
+                breaks limits that stand alone on top.
         """
         out = np.empty(self._answer_size)
         outcome = self._run(state, out)
@@ -215,6 +219,11 @@ class Stack:
                 )
         if outcome == slots.NOT_FINITE:
             raise SolverError("a torque is not finite.")
+        if outcome == slots.BEYOND:
+            raise SolverError(
+                f"'{self.terms[0].task.name}' on top cannot be broken, and was: a "
+                "velocity, target or gain is too large to calculate with."
+            )
         raise ModelError("the inertia matrix is not positive definite.")
 
     def _bind(self, state: State) -> None:
@@ -251,11 +260,13 @@ class Stack:
         """Tau = M vdot + h, (n,) [Nm].
 
         Raises:
-            SolverError: a torque is not finite.
+            SolverError: a torque is not finite, or breaks limits alone on top.
         """
         tau = np.empty(vdot.size)
         if not inverse_dynamics(self._M, self.h, vdot, tau):
-            raise SolverError("a torque is not finite.")
+            self._complain(slots.NOT_FINITE)
+        if not kept(self.raw, self.bands, int(self._table[slots.GUARDED]), tau):
+            self._complain(slots.BEYOND)
         return tau
 
     def __reduce__(self) -> NoReturn:

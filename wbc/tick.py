@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wbc import slots
 from wbc.arrays import Array, IntArray
-from wbc.assembly import assemble, back_substitute, inverse_dynamics
+from wbc.assembly import assemble, back_substitute, inverse_dynamics, kept
 from wbc.compiled import compiled, inner
 from wbc.lexicographic.solver import lexicographic
 from wbc.lexicographic.work import work_at
@@ -54,6 +54,10 @@ def conclude(table: IntArray, out: Array) -> int:
         out[2 * n + m + k] = w.first[k + 1] - w.first[k]
     if not inverse_dynamics(M, h, vdot, out[:n]):
         return slots.NOT_FINITE
+    raw = matrix(floats_at(table[slots.RAW], m * n), m, n)
+    bands = matrix(floats_at(table[slots.BANDS], 5 * m), 5, m)
+    if not kept(raw, bands, table[slots.GUARDED], out[:n]):
+        return slots.BEYOND
     return slots.SOLVED if sweeps > 0 else slots.UNSOLVED
 
 
