@@ -117,5 +117,7 @@ def announce(kernel: Any, what: str) -> None:
     if kernel.signatures:
         return
     if CACHE is None or not any(CACHE.rglob(f"*{kernel.__name__}-*.nbc")):
-        sys.stderr.write(f"wbc: compiling {what}, once; up to half a minute ...\n")
+        sys.stderr.write(
+            f"wbc: compiling {what}, kept for later runs; up to half a minute ...\n"
+        )
         sys.stderr.flush()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import final
+from typing import NoReturn, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -59,11 +59,6 @@ class Controller:
         self.robot = robot
         self.hierarchy = Hierarchy.of(hierarchy)
         self.resolver = HierarchicalQP() if resolver is None else resolver
-        if not isinstance(self.resolver, Resolver):
-            raise InputError(
-                f"expected a resolver such as HierarchicalQP() or NullSpace(), got "
-                f"{resolver!r}."
-            )
         self.dt = positive(dt, "dt")
         self.failures = 0
         self._adopt(Bound(robot, self.hierarchy, self.resolver))
@@ -191,6 +186,14 @@ class Controller:
         torque = np.clip(gravity - braking, -limit, limit)
         self._state.commanded = torque.copy()
         return Solution(self._stack, torque, None, status, message)
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse copies and pickles, as its stack does.
+
+        Raises:
+            InputError: always.
+        """
+        self._stack.__reduce__()
 
     def __repr__(self) -> str:
         return (

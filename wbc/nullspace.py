@@ -16,7 +16,7 @@ from __future__ import annotations
 from typing import Literal, TypeAlias, final, get_args
 
 from wbc.damped import DampedInverse
-from wbc.errors import UnknownName
+from wbc.errors import InputError, UnknownName
 from wbc.resolver import Resolver, Solver
 from wbc.saturation import Saturation
 from wbc.stack import Stack
@@ -42,6 +42,7 @@ class NullSpace(Resolver):
 
     Raises:
         UnknownName: no such law.
+        InputError: damping is something else.
     """
 
     def __init__(
@@ -49,6 +50,11 @@ class NullSpace(Resolver):
     ) -> None:
         if law not in get_args(LawName):
             raise UnknownName("projection law", law, get_args(LawName))
+        if damping is not None and not isinstance(damping, DampedInverse):
+            raise InputError(
+                "damping must be None or a DampedInverse, such as DampedInverse(), not "
+                f"{damping!r}."
+            )
         self.law, self.damping = law, damping
         self.name = "nullspace" if law == "wbcf" else f"nullspace:{law}"
 

@@ -36,6 +36,8 @@ class Answer(NamedTuple):
         slacks: (m,) weighted slack of every row when its own level was solved, or
             None where the resolver does not tell.
         torque: (n,) joint torques, or None where the resolver leaves them to others.
+        kinetic: whether what is left free should cost least vdot^T M vdot, rather than
+            least vdot^T vdot.
     """
 
     vdot: Array
@@ -43,6 +45,7 @@ class Answer(NamedTuple):
     status: Status
     slacks: Array | None = None
     torque: Array | None = None
+    kinetic: bool = True
 
 
 class Solver(ABC):

@@ -62,8 +62,8 @@ class Solution:
     """
 
     __slots__ = (
-        "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message", "share",
-        "status", "torque",
+        "_kinetic", "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message",
+        "share", "status", "torque",
     )  # fmt: skip
 
     def __init__(
@@ -80,11 +80,13 @@ class Solution:
         self.share = share
         self._ranks: Array | IntArray | None = None
         self._slacks: Array | None = None
+        self._kinetic = True
         if answer is None:
             self.acceleration = np.full(torque.size, np.nan)
         else:
             self.acceleration = answer.vdot
             self._ranks, self._slacks = answer.ranks, answer.slacks
+            self._kinetic = answer.kinetic
 
     @property
     def ok(self) -> bool:
@@ -119,15 +121,24 @@ class Solution:
     def certificate(self) -> Certificate:
         """Proof of lexicographic optimality; `.worst` is 0 for a perfect one.
 
+        What the levels leave free is held to the law's own measure: least
+        vdot^T M vdot, or for `NullSpace("tsid")` least vdot^T vdot.
+
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
+        return self._certify(self._kinetic)
+
+    def _certify(self, kinetic: bool) -> Certificate:
         stack = self._fresh()
         where = stack.levels
-        levels = [(stack.Ay[k], stack.lower[k], stack.upper[k]) for k in where]
+        A = stack.Ay if kinetic else stack.A
+        levels = [(A[k], stack.lower[k], stack.upper[k]) for k in where]
         then = None if self._slacks is None else [self._slacks[k] for k in where]
-        y = np.linalg.solve(stack.L_inv.T, self.acceleration)
-        return certify(levels, y, then)
+        x = self.acceleration
+        return certify(
+            levels, np.linalg.solve(stack.L_inv.T, x) if kinetic else x, then
+        )
 
     def level_rows(self) -> list[tuple[Array, Array, Array]]:
         """Copies of the rows that were resolved: (A (m, n), lower (m,), upper (m,)).
@@ -169,7 +180,7 @@ class Solution:
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
-        return explain(self._fresh(), self.acceleration, self.certificate())
+        return explain(self._fresh(), self.acceleration, self._certify(True))
 
     def cost_of_strictness(self) -> StrictnessCost:
         """What each level misses alone, what it misses here, who took the difference.

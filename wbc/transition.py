@@ -18,7 +18,7 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.errors import SolverError
+from wbc.errors import InputError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.resolver import Answer, Resolver, Status
 from wbc.robot import Robot
@@ -40,12 +40,17 @@ class Bound:
     """A hierarchy at work: its stack, and the solver of a resolver for it.
 
     Raises:
-        UnknownName, InputError: a task does not fit the robot.
+        UnknownName, InputError: a task does not fit the robot, or the resolver is none.
     """
 
     __slots__ = ("hierarchy", "solver", "stack")
 
     def __init__(self, robot: Robot, hierarchy: Hierarchy, resolver: Resolver) -> None:
+        if not isinstance(resolver, Resolver):
+            raise InputError(
+                f"expected a resolver such as HierarchicalQP() or NullSpace(), got "
+                f"{resolver!r}."
+            )
         self.hierarchy = hierarchy
         self.stack = Stack(robot, hierarchy)
         self.solver = resolver.start(self.stack)

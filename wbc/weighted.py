@@ -7,6 +7,7 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import positive
+from wbc.errors import InputError
 from wbc.lexicographic import Lexicographic
 from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
@@ -26,13 +27,17 @@ class WeightedQP(Resolver):
         ratio: weight of a level relative to the next one.
 
     Raises:
-        InputError: the ratio is not a number greater than 0.
+        InputError: the ratio is not a number of at least 1.
     """
 
     name = "weighted"
 
     def __init__(self, ratio: float = 100.0) -> None:
         self.ratio = positive(ratio, "ratio")
+        if self.ratio < 1.0:
+            raise InputError(
+                f"ratio is {ratio}: lower levels would weigh more. Give at least 1."
+            )
 
     def start(self, stack: Stack) -> Solver:
         """A solver with a warm start of its own."""
