@@ -23,6 +23,7 @@ __all__ = ["Arrow", "Marker", "Trace", "arrows_of", "marker_of", "trace_of"]
 _TRACE_POINTS: Final = 500
 _LONGEST: Final = 0.3  # of the room's radius: the largest arrow at least half of it
 _DWARF: Final = 5.0  # times smaller than the largest of its unit
+_NOISE: Final = 1e-3  # a vector that is never longer, in its unit, is none
 
 
 @final
@@ -184,14 +185,18 @@ def arrows_of(
 
 
 def _together(arrows: Sequence[Arrow], sizes: Sequence[float]) -> list[float]:
-    """Arrows of one unit share a scale, but not with those that would be dwarfs."""
+    """Arrows of one unit share a scale, but not with those that would be dwarfs.
+
+    Round-off has no scale of its own: an arrow that is never longer stays invisible.
+    """
     largest: dict[str, float] = {}
     for arrow, size in zip(arrows, sizes, strict=True):
         largest[arrow.unit] = max(largest.get(arrow.unit, 0.0), size)
-    return [
-        size if _DWARF * size < largest[arrow.unit] else largest[arrow.unit]
-        for arrow, size in zip(arrows, sizes, strict=True)
+    shared = [
+        size if size > _NOISE and _DWARF * size < most else most
+        for size, most in zip(sizes, (largest[a.unit] for a in arrows), strict=True)
     ]
+    return [size if size > _NOISE else 0.0 for size in shared]
 
 
 def _per_cm(size: float, radius: float) -> float:

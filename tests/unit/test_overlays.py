@@ -75,6 +75,9 @@ def test_arrows_of_one_unit_share_a_scale_unless_one_would_be_a_dwarf():
 
 def test_an_arrow_that_never_shows_has_some_scale():
     assert scales(pushing(0.0)) == [1.0]
+    assert scales(pushing(1e-11)) == [1.0]
+    push, noise = scales(pushing(100.0), pushing(1e-11))
+    assert noise == push
 
 
 def test_arrows_that_do_not_fit_are_refused():
