@@ -88,6 +88,8 @@ def write_report(
 
 
 def _verdict(metrics: Sequence[Metric]) -> str:
+    if not metrics:
+        return ""
     held = all(metric.holds for metric in metrics)
     look, sign = ("good", "✓") if held else ("bad", "✗")
     return f'<p class="verdict {look}">{sign} {verdict(metrics)}</p>'

@@ -181,4 +181,11 @@ def need_display() -> None:
         warnings.simplefilter("always")
         ready = glfw.init()
     if not ready:
-        raise NoWindow(str(said[-1].message) if said else "GLFW does not start")
+        raise NoWindow(
+            _reason(str(said[-1].message)) if said else "GLFW does not start"
+        )
+
+
+def _reason(said: str) -> str:
+    """GLFW's words without its number: "(65550) b'X11: Failed ...'"."""
+    return said.partition(") ")[2].strip("b'\"") or said
