@@ -12,7 +12,7 @@ from sims.cli import main
 def test_random_stacks_keep_every_bar(tmp_path, capsys):
     assert main(["compare", "random", "--seed", "0", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
-    assert "all 13 bounds hold" in printed
+    assert "all 15 bounds hold" in printed
     metrics = json.loads((tmp_path / "metrics.json").read_text())
     for name in ("nullspace", "nullspace_tsid", "hqp"):
         assert metrics[f"{name}_leak_relative"] < 1e-8
