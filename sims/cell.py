@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from typing import final
 
 import mujoco
-import numpy as np
 
+from sims.joints import find_joints, find_motors
 from sims.mismatch import Mismatch
 from sims.sensors import Encoders
 from sims.wrist import WristSensor
-from wbc import InputError, Robot
+from wbc import Robot
 from wbc.arrays import Array
 
 __all__ = ["ArmCell", "Cell", "Observation"]
@@ -104,8 +104,8 @@ class ArmCell(Cell):
             self.wrists = (wrist,)
             wrist.mount(spec)
         self.model = spec.compile()
-        self._joints = [self._joint(joint) for joint in robot.joint_names]
-        self._motors = np.array([self._motor(j) for j in self._joints])
+        self._joints = find_joints(self.model, robot.joint_names)
+        self._motors = find_motors(self.model, self._joints)
         self._qpos = self.model.jnt_qposadr[self._joints]
         self._dofs = self.model.jnt_dofadr[self._joints]
         if wrist is not None:
@@ -115,20 +115,6 @@ class ArmCell(Cell):
         self.data = mujoco.MjData(self.model)
         self._encoders = encoders or Encoders()
         self.reset(robot.q_home)
-
-    def _joint(self, name: str) -> int:
-        joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
-        if joint < 0:
-            raise InputError(f"joint '{name}' of the robot is not in the scene.")
-        return int(joint)
-
-    def _motor(self, joint: int) -> int:
-        driven = self.model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
-        motors = np.flatnonzero(driven & (self.model.actuator_trnid[:, 0] == joint))
-        if motors.size != 1:
-            name = mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_JOINT, joint)
-            raise InputError(f"joint '{name}' must have one motor, has {motors.size}.")
-        return int(motors[0])
 
     def reset(self, q: Array) -> None:
         """Put the arm at rest at q (n,), time 0."""

@@ -10,10 +10,11 @@ import numpy as np
 
 from sims.cell import Observation
 from sims.cutting.layout import CUTTER, GRIP, PULLER, TIP
+from sims.joints import find_joints, find_motors
 from sims.mismatch import Mismatch
 from sims.sensors import Encoders
 from sims.wrist import WristSensor
-from wbc import InputError, Robot
+from wbc import Robot
 from wbc.arrays import Array
 
 __all__ = ["ArmView", "CuttingCell"]
@@ -43,25 +44,11 @@ class ArmView:
         encoders: Encoders,
     ) -> None:
         self.name, self.robot, self.model, self.data = robot.name, robot, model, data
-        joints = [self._joint(name) for name in robot.joint_names]
+        joints = find_joints(model, robot.joint_names)
         self.qpos = model.jnt_qposadr[joints]
         self.dofs = model.jnt_dofadr[joints]
-        self._motors = np.array([self._motor(joint) for joint in joints])
+        self._motors = find_motors(model, joints)
         self._wrists, self._encoders = tuple(wrists), encoders
-
-    def _joint(self, name: str) -> int:
-        joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
-        if joint < 0:
-            raise InputError(f"joint '{name}' of the robot is not in the scene.")
-        return int(joint)
-
-    def _motor(self, joint: int) -> int:
-        driven = self.model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT
-        motors = np.flatnonzero(driven & (self.model.actuator_trnid[:, 0] == joint))
-        if motors.size != 1:
-            name = self.model.joint(joint).name
-            raise InputError(f"joint '{name}' must have one motor, has {motors.size}.")
-        return int(motors[0])
 
     def observe(self, wrenches: dict[str, Array]) -> Observation:
         """Joint readings of this instant, with what the wrists felt."""
