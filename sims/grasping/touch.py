@@ -7,6 +7,7 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
+from sims.contacts import ContactForces
 from sims.grasping.gripper import JOINTS
 from wbc.arrays import Array
 
@@ -20,16 +21,12 @@ EVERY: Final = 20
 class Touch:
     """Samples the contact forces of both fingers.
 
-    The engine is asked about a copy of the world, because between two steps the world
-    itself has positions of one instant and forces of another.
-
     Args:
         model: of the cell.
-
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
-        self._model, self._world = model, mujoco.MjData(model)
+        self._contacts = ContactForces(model)
         self._fingers = [int(model.body(name).id) for name in JOINTS]
         self._ticks = 0
         self._t: list[float] = []
@@ -59,24 +56,20 @@ class Touch:
         self._ticks += 1
         if self._ticks % EVERY != 1:
             return
-        mujoco.mj_copyData(self._world, self._model, data)
-        mujoco.mj_forward(self._model, self._world)
+        self._contacts.look(data)
         self._t.append(float(data.time))
         self._samples.append(np.array([self._push(f) for f in self._fingers]))
 
     def _push(self, finger: int) -> Array:
         """Place and force (2, 3) of a finger's contacts together."""
-        world, body_of = self._world, self._model.geom_bodyid
+        world = self._contacts.world
         total, place, weight = np.zeros(3), np.zeros(3), 0.0
-        for index, contact in enumerate(world.contact):
-            bodies = body_of[contact.geom]
+        for i in range(world.ncon):
+            bodies, on_second, normal = self._contacts.of(i)
             if finger not in bodies:
                 continue
-            wrench = np.zeros(6)
-            mujoco.mj_contactForce(self._model, world, index, wrench)
-            on_second = contact.frame.reshape(3, 3).T @ wrench[:3]
             total += on_second if bodies[0] == finger else -on_second
-            place += wrench[0] * contact.pos
-            weight += wrench[0]
+            place += normal * world.contact[i].pos
+            weight += normal
         place = place / weight if weight > 0.0 else world.xpos[finger]
         return np.array([place, total])

@@ -8,6 +8,7 @@ from typing import Final, final
 import mujoco
 import numpy as np
 
+from sims.contacts import ContactForces
 from sims.view.marks import FORCE, THIN, Colour, Mark, arrow
 from sims.wrist import WristSensor
 from wbc.arrays import Array
@@ -63,14 +64,10 @@ def felt(
 
 @final
 class Contacts:
-    """True contact forces, for arrows; nothing that is simulated feels the look.
-
-    The engine has the forces only at the end of a time step, so they are computed on a
-    copy of its state.
-    """
+    """True contact forces, for arrows."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
-        self._model, self._copy = model, mujoco.MjData(model)
+        self._rests, self._contacts = model.body_weldid == 0, ContactForces(model)
 
     def marks(self, data: mujoco.MjData) -> list[Mark]:
         """An arrow for each two bodies that touch: what the resting one feels.
@@ -80,10 +77,9 @@ class Contacts:
         """
         if not data.ncon:
             return []
-        mujoco.mj_copyData(self._copy, self._model, data)
-        mujoco.mj_forward(self._model, self._copy)
+        self._contacts.look(data)
         sums: dict[tuple[int, int], Array] = {}
-        for i in range(self._copy.ncon):
+        for i in range(self._contacts.world.ncon):
             pair, moment = self._contact(i)
             sums[pair] = sums.get(pair, 0.0) + moment
         return [
@@ -95,12 +91,8 @@ class Contacts:
 
     def _contact(self, i: int) -> tuple[tuple[int, int], Array]:
         """Its bodies; its force (3,), place times size of the force (3,), that size."""
-        contact, wrench = self._copy.contact[i], np.zeros(6)
-        mujoco.mj_contactForce(self._model, self._copy, i, wrench)
-        force = contact.frame.reshape(3, 3).T @ wrench[:3]
-        size = np.linalg.norm(force)
-        first, second = (int(self._model.geom_bodyid[g]) for g in contact.geom)
-        rests = self._model.body_weldid == 0
-        if rests[first] and not rests[second]:
+        (first, second), force, _ = self._contacts.of(i)
+        size, p = np.linalg.norm(force), self._contacts.world.contact[i].pos
+        if self._rests[first] and not self._rests[second]:
             force = -force
-        return (first, second), np.array([*force, *(size * contact.pos), size])
+        return (first, second), np.array([*force, *(size * p), size])
