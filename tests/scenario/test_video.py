@@ -7,7 +7,8 @@ import os
 import resource
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import av
 import mujoco
@@ -158,28 +159,36 @@ def add_noise(encoder: Encoder, pictures: int) -> None:
         encoder.add(rng.integers(0, 255, (48, 64, 3), dtype=np.uint8))
 
 
-@pytest.fixture
-def little_room():
-    """Files of this process may grow to 5 kB only, as on a disk that is full."""
+@contextmanager
+def little_room() -> Iterator[None]:
+    """Files of this process may grow to 5 kB only, as on a disk that is full.
+
+    Around no more than what is tested: the limit is the test runner's, too, which
+    could not write a line to a longer log.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (5000, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_film_without_room_is_one_error_and_leaves_nothing(tmp_path, little_room):
-    encoder = Encoder(tmp_path / "film.mp4", 64, 48)
-    with pytest.raises(NoVideo, match=r"film\.mp4: .*large"):
-        add_noise(encoder, 200)
-    encoder.abandon()
+def test_a_film_without_room_is_one_error_and_leaves_nothing(tmp_path):
+    with little_room():
+        encoder = Encoder(tmp_path / "film.mp4", 64, 48)
+        with pytest.raises(NoVideo, match=r"film\.mp4: .*large"):
+            add_noise(encoder, 200)
+        encoder.abandon()
     assert os.listdir(tmp_path) == []
 
 
-def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path, little_room):
-    encoder = Encoder(tmp_path / "film.mp4", 64, 48)
-    add_noise(encoder, 12)  # which the encoder holds back until the end
-    with pytest.raises(NoVideo):
-        encoder.finish()
+def test_a_film_that_cannot_be_finished_leaves_nothing(tmp_path):
+    with little_room():
+        encoder = Encoder(tmp_path / "film.mp4", 64, 48)
+        add_noise(encoder, 12)  # which the encoder holds back until the end
+        with pytest.raises(NoVideo):
+            encoder.finish()
     assert os.listdir(tmp_path) == []
 
 
