@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from robots.assembly import add_section, parse
 from wbc import ModelError, Robot
 from wbc.arrays import Array, frozen, rotation
+from wbc.checks import text
 
 __all__ = ["Placed", "load", "mjcf"]
 
@@ -59,6 +60,7 @@ class Placed:
     R: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
+        text(self.mjcf, "mjcf of a placed arm")
         object.__setattr__(self, "position", frozen(self.position, (3,), "position"))
         object.__setattr__(self, "R", rotation(self.R, "R of a placed arm"))
 

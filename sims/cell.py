@@ -15,6 +15,7 @@ from sims.sensors import Encoders
 from sims.wrist import WristSensor
 from wbc import Robot
 from wbc.arrays import Array
+from wbc.checks import expect, text
 
 __all__ = ["ArmCell", "Cell", "Observation"]
 
@@ -85,7 +86,8 @@ class ArmCell(Cell):
         wrist: a force/torque sensor; none by default.
 
     Raises:
-        InputError: a joint of the robot is missing in the scene, or has no motor.
+        InputError: a joint of the robot is missing in the scene, or has no motor; an
+            argument is of the wrong kind.
         UnknownName: the site of the force/torque sensor is missing.
     """
 
@@ -99,7 +101,12 @@ class ArmCell(Cell):
         encoders: Encoders | None = None,
         wrist: WristSensor | None = None,
     ) -> None:
-        self.name, self.robot, self._wrist = name, robot, wrist
+        expect(Robot, robot=robot)
+        expect(mujoco.MjSpec, spec=spec)
+        expect(Mismatch | None, mismatch=mismatch)
+        expect(Encoders | None, encoders=encoders)
+        expect(WristSensor | None, wrist=wrist)
+        self.name, self.robot, self._wrist = text(name, "name"), robot, wrist
         if wrist is not None:
             self.wrists = (wrist,)
             wrist.mount(spec)
@@ -113,7 +120,7 @@ class ArmCell(Cell):
         if mismatch is not None:
             mismatch.apply(self.model, self._dofs, robot.tau_max)
         self.data = mujoco.MjData(self.model)
-        self._encoders = encoders or Encoders()
+        self._encoders = Encoders() if encoders is None else encoders
         self.reset(robot.q_home)
 
     def reset(self, q: Array) -> None:

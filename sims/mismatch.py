@@ -8,7 +8,8 @@ from typing import final
 import mujoco
 import numpy as np
 
-from wbc.arrays import Array, BoolArray
+from wbc.arrays import Array, BoolArray, positive
+from wbc.checks import flag, whole
 
 __all__ = ["Mismatch"]
 
@@ -24,6 +25,9 @@ class Mismatch:
         coulomb: dry friction, as a share of each joint's torque limit.
         viscous: viscous friction [s], as a share of the torque limit per rad/s.
         seed: of the errors.
+
+    Raises:
+        InputError: a negative number, or a seed that is not whole.
     """
 
     mass: float = 0.05
@@ -31,6 +35,23 @@ class Mismatch:
     coulomb: float = 0.005
     viscous: float = 0.005
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what are no sizes."""
+        for name in ("mass", "offset", "coulomb", "viscous"):
+            positive(getattr(self, name), name, zero=True)
+        whole(self.seed, "seed")
+
+    @classmethod
+    def when(cls, mismatch: bool, seed: int) -> Mismatch | None:
+        """The errors of a seed where they are wanted, else None.
+
+        Raises:
+            InputError: not a truth value, or not a seed.
+        """
+        flag(mismatch=mismatch)
+        errors = cls(seed=seed)
+        return errors if mismatch else None
 
     def apply(self, model: mujoco.MjModel, dofs: Array, tau_max: Array) -> None:
         """Change the simulated model, in place; the controller's is not touched."""

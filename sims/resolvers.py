@@ -8,10 +8,10 @@ from wbc import (
     HierarchicalQP,
     NullSpace,
     Resolver,
-    UnknownName,
     WeightedQP,
     backends,
 )
+from wbc.checks import known
 
 __all__ = ["make_resolver", "resolver_names"]
 
@@ -35,9 +35,7 @@ def make_resolver(name: str) -> Resolver:
     Raises:
         UnknownName: no such resolver, or its QP backend is not installed.
     """
+    known("resolver", name, resolver_names())
     if name in FIXED:
         return FIXED[name]()
-    kind, _, backend = name.partition(":")
-    if kind == "hqp" and backend in backends():
-        return HierarchicalQP(backend)
-    raise UnknownName("resolver", name, resolver_names())
+    return HierarchicalQP(name.removeprefix("hqp:"))

@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import NamedTuple, Protocol
 
-import numpy as np
-
 from sims.cell import Cell, Observation
 from sims.log import Log
 from wbc import Controller, InputError, Solution
-from wbc.arrays import Array
+from wbc.arrays import Array, positive
+from wbc.checks import expect, flag, names
+from wbc.errors import shown
 
 __all__ = [
     "CERTIFY_EVERY",
@@ -101,18 +101,24 @@ def run(
 
     Raises:
         InputError: a duration that is no positive number, or a controller whose
-            period is not the cell's time step.
+            period is not the cell's time step; an argument of the wrong kind.
+        UnknownName: there is no such site.
     """
-    dt = cell.model.opt.timestep
-    if not (np.isfinite(duration) and duration > 0.0):
-        raise InputError(f"duration must be a positive number of seconds: {duration}.")
+    expect(Cell, cell=cell)
+    expect(Controller, controller=controller)
+    expect(str, label=label)
+    flag(quiet=quiet)
+    for what, called in (("script", script), ("watch", watch)):
+        if called is not None and not callable(called):
+            raise InputError(f"{what} must be a function, not {shown(called)}.")
+    dt, duration = cell.model.opt.timestep, positive(duration, "duration [s]")
     if abs(dt - controller.dt) > 1e-12:
         raise InputError(
             f"the cell steps by {dt} s and the controller by {controller.dt} s: "
             "make them equal."
         )
     ticks = max(1, round(duration / dt))
-    log = Log(cell, controller, ticks, sites)
+    log = Log(cell, controller, ticks, names(sites, "sites"))
     bar, probe = Bar(label, ticks, quiet), current_probe()
     certify = controller.resolver.name.startswith("hqp")
     for tick in range(ticks):

@@ -8,8 +8,12 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array, positive
+from wbc.checks import whole
 
 __all__ = ["Encoders"]
+
+LATEST = 100_000
+"""Ticks by which readings may be late, as all of them are kept."""
 
 
 @final
@@ -24,7 +28,7 @@ class Encoders:
         seed: of the noise.
 
     Raises:
-        InputError: a negative number.
+        InputError: a negative number, or a delay or seed that is not whole.
     """
 
     def __init__(
@@ -41,8 +45,10 @@ class Encoders:
             positive(velocity_noise, "velocity_noise", zero=True),
         )
         self._bias = positive(position_bias, "position_bias", zero=True)
-        self._delay = int(positive(delay, "delay", zero=True))
-        self._seed = seed
+        self._delay, self._seed = (
+            whole(delay, "delay", most=LATEST),
+            whole(seed, "seed"),
+        )
         self.reset()
 
     def reset(self) -> None:

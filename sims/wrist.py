@@ -9,6 +9,7 @@ import numpy as np
 
 from wbc import InputError, UnknownName
 from wbc.arrays import Array, positive
+from wbc.checks import flag, text, whole
 from wbc.compiled import compiled
 
 __all__ = ["WristSensor"]
@@ -43,7 +44,8 @@ class WristSensor:
         seed: of bias and noise.
 
     Raises:
-        InputError: a negative number; at mounting, a site on a body with joints.
+        InputError: a negative number, or an argument of another kind; at mounting, a
+            site on a body with joints.
         UnknownName: at mounting, there is no such site.
     """
 
@@ -60,12 +62,14 @@ class WristSensor:
         tare: bool = True,
         seed: int = 0,
     ) -> None:
-        self.site, self.name, self.tare = site, name, tare
+        flag(tare=tare)
+        self.site, self.name, self.tare = text(site, "site"), text(name, "name"), tare
         self._noise = _both(force_noise, torque_noise, "noise")
         self._noisy = bool(self._noise.any())
         self._bias = _both(force_bias, torque_bias, "bias")
-        self.cutoff = np.inf if cutoff == np.inf else positive(cutoff, "cutoff")
-        self._seed = seed
+        none = isinstance(cutoff, float) and cutoff == np.inf
+        self.cutoff = np.inf if none else positive(cutoff, "cutoff")
+        self._seed = whole(seed, "seed")
 
     def mount(self, spec: mujoco.MjSpec) -> None:
         """Add the engine's sensors to a scene, before it is compiled.

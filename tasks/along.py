@@ -11,8 +11,9 @@ from tasks.base import CatalogueTask
 from tasks.evaluator import Code
 from tasks.path import Path, still
 from wbc import PD, Damper, Robot
-from wbc.arrays import Array, frozen, positive
+from wbc.arrays import Array, number, positive
 from wbc.binding import announce
+from wbc.checks import named
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -50,7 +51,7 @@ class PointOnCurve(CatalogueTask):
     ) -> None:
         law = PD(stiffness, damping)
         rows = ("across 1", "across 2")
-        super().__init__(name or f"{frame} on curve", "m", rows, law, (frame,))
+        super().__init__(named(name, f"{frame} on curve"), "m", rows, law, (frame,))
         self.curve = still(curve, self.name)
 
     def parameters(self, robot: Robot) -> Array:
@@ -102,11 +103,13 @@ class TravelSpeed(CatalogueTask):
         name: str | None = None,
     ) -> None:
         law = Damper(positive(gain, "gain"))
-        super().__init__(name or f"{frame} speed", "m/s", ("along",), law, (frame,))
+        super().__init__(
+            named(name, f"{frame} speed"), "m/s", ("along",), law, (frame,)
+        )
         self.path = still(path, self.name)
         self.speed = speed
         self.ramp = positive(ramp, "ramp")
-        self.start = float(frozen(start, (), "start"))
+        self.start = number(start, "start")
         self.end = path.length if end is None else positive(end, "end")
         if self.end > path.length:
             raise InputError(

@@ -13,8 +13,8 @@ from tasks.geometry.features import perpendicular
 from tasks.kernels.paths import direction as path_direction
 from tasks.path import Path, PathPoint, still
 from wbc import PD, Robot
-from wbc.arrays import Array, frozen, unit
-from wbc.errors import InputError
+from wbc.arrays import Array, frozen, number, unit
+from wbc.checks import named
 
 __all__ = ["AxisAlignment", "AxisAlongPath"]
 
@@ -55,7 +55,7 @@ class AxisAlignment(CatalogueTask):
         name: str | None = None,
     ) -> None:
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} axis", "rad", ROWS, law, (frame,))
+        super().__init__(named(name, f"{frame} axis"), "rad", ROWS, law, (frame,))
         self._parameters = np.zeros(18)
         self._parameters[:9] = triad(axis, self.name)
         self.set_target(direction)
@@ -121,11 +121,10 @@ class AxisAlongPath(CatalogueTask):
         name: str | None = None,
     ) -> None:
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} along path", "rad", ROWS, law, (frame,))
+        super().__init__(named(name, f"{frame} along path"), "rad", ROWS, law, (frame,))
         self._triad, self.path = triad(axis, self.name), still(path, self.name)
-        if not np.isfinite([work, travel]).all():
-            raise InputError(f"angles of '{self.name}' must be finite.")
-        self.work, self.travel = float(work), float(travel)
+        self.work = number(work, f"work angle of '{self.name}'")
+        self.travel = number(travel, f"travel angle of '{self.name}'")
 
     def direction_at(self, point: PathPoint) -> Array:
         """The direction and two derivatives by s at a point of the path, (3, 3)."""

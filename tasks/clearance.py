@@ -8,6 +8,7 @@ import numpy as np
 
 from wbc import Robot, Rows, State, Task
 from wbc.arrays import positive
+from wbc.checks import named, text
 from wbc.errors import InputError
 
 __all__ = ["Clearance"]
@@ -45,9 +46,10 @@ class Clearance(Task):
         rate: float = 10.0,
         name: str | None = None,
     ) -> None:
+        first, second = text(first, "first frame"), text(second, "second frame")
         if first == second:
             raise InputError(f"'{first}' has no distance from itself: name two frames.")
-        name = name or f"{first} clear of {second}"
+        name = named(name, f"{first} clear of {second}")
         super().__init__(name, "m", (first, second))
         self.distance = positive(distance, "distance")
         self.rate = positive(rate, "rate")

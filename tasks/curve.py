@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline, make_interp_spline
 
 from tasks.path import Path
-from wbc.arrays import Array, frozen
+from wbc.arrays import Array, frozen, numbers
 from wbc.errors import InputError
 
 __all__ = ["Curve"]
@@ -62,7 +62,7 @@ class Curve(Path):
 
 
 def _points(points: ArrayLike) -> Array:
-    array = np.asarray(points, dtype=np.float64)
+    array = numbers(points, "points of a curve")
     if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] <= DEGREE:
         raise InputError(
             f"a curve needs at least {DEGREE + 1} points of shape (k, 3), got "
@@ -108,7 +108,7 @@ def _along(normals: ArrayLike | None, u: Array, at: Array, count: int) -> Array 
     """The given normals interpolated at the knots, (KNOTS, 3)."""
     if normals is None:
         return None
-    given = np.asarray(normals, dtype=np.float64)
+    given = numbers(normals, "normals of a curve")
     if given.shape == (3,):
         given = np.tile(given, (count, 1))
     given = frozen(given, (count, 3), "the curve's normals")

@@ -13,8 +13,9 @@ from tasks.contact import Contact
 from tasks.forcelaw import ForceLaw
 from tasks.touch import TouchTask
 from wbc import PD, FrameState, Robot, Rows, State
-from wbc.arrays import Array, frozen, per_row, positive, rotation
-from wbc.errors import InputError
+from wbc.arrays import Array, frozen, numbers, per_row, positive, rotation
+from wbc.checks import expect, named
+from wbc.errors import InputError, shown
 
 __all__ = ["HybridForceMotion"]
 
@@ -77,7 +78,7 @@ class HybridForceMotion(TouchTask):
         sensor_frame: str = "wrist_sensor",
         name: str | None = None,
     ) -> None:
-        name = name or f"{frame} hybrid"
+        name = named(name, f"{frame} hybrid")
         S = _selection(selection, name)
         super().__init__(name, "m, N", frame, S.size, axes, sensor, sensor_frame)
         self._S = S
@@ -87,7 +88,8 @@ class HybridForceMotion(TouchTask):
             if rows.any()
         )
         self._f, self._m = np.flatnonzero(S), np.flatnonzero(S == 0.0)
-        self.law = law or ForceLaw()
+        expect(ForceLaw | None, law=law)
+        self.law = ForceLaw() if law is None else law
         self.motion_law = PD(stiffness, damping)
         self.force_damping = per_row(force_damping, "force_damping")
         self.approach = positive(approach, "approach", zero=True)
@@ -115,7 +117,7 @@ class HybridForceMotion(TouchTask):
         v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
         a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
         if orientation is not None:
-            self._R_d = rotation(orientation, f"target of '{self.name}'")
+            self._R_d = rotation(orientation, f"orientation of '{self.name}'")
         self._target[:, :3] = p, v, a
 
     def set_force(self, force: ArrayLike) -> None:
@@ -240,10 +242,10 @@ class HybridForceMotion(TouchTask):
 
 
 def _selection(selection: Sequence[int], task: str) -> Array:
-    S = np.array(selection, dtype=np.float64)
+    S = numbers(selection, f"selection of '{task}'")
     if S.shape not in ((3,), (6,)) or not np.isin(S, (0.0, 1.0)).all():
         raise InputError(
             f"selection of '{task}' must be three or six of 0 (motion) and 1 (force), "
-            f"got {selection!r}."
+            f"got {shown(selection)}."
         )
     return S

@@ -11,6 +11,7 @@ from tasks.base import CatalogueTask
 from tasks.evaluator import Code
 from wbc import PD, Robot
 from wbc.arrays import Array, frozen, rotation
+from wbc.checks import named
 
 __all__ = ["FrameOrientation", "FramePose", "FramePosition"]
 
@@ -45,7 +46,7 @@ class FramePosition(CatalogueTask):
         name: str | None = None,
     ) -> None:
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} position", "m", AXES, law, (frame,))
+        super().__init__(named(name, f"{frame} position"), "m", AXES, law, (frame,))
         self._parameters = np.zeros(9)
         self.set_target(target)
 
@@ -101,7 +102,9 @@ class FrameOrientation(CatalogueTask):
         name: str | None = None,
     ) -> None:
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} orientation", "rad", AXES, law, (frame,))
+        super().__init__(
+            named(name, f"{frame} orientation"), "rad", AXES, law, (frame,)
+        )
         self._parameters = np.zeros(15)
         self.set_target(target)
 
@@ -157,7 +160,7 @@ class FramePose(CatalogueTask):
     ) -> None:
         rows = tuple(f"{kind} {axis}" for kind in ("p", "R") for axis in AXES)
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} pose", "m, rad", rows, law, (frame,))
+        super().__init__(named(name, f"{frame} pose"), "m, rad", rows, law, (frame,))
         self._parameters = np.zeros(24)
         self.set_target(position, orientation)
 
@@ -173,8 +176,8 @@ class FramePose(CatalogueTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(position, (3,), f"target of '{self.name}'")
-        R = rotation(orientation, f"target of '{self.name}'")
+        p = frozen(position, (3,), f"target position of '{self.name}'")
+        R = rotation(orientation, f"target orientation of '{self.name}'")
         V = frozen(twist, (6,), f"target twist of '{self.name}'")
         A = frozen(acceleration, (6,), f"target acceleration of '{self.name}'")
         linear = [p, V[:3], A[:3]]

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from tasks.touch import TouchTask
 from wbc import PD, Rows, State
-from wbc.arrays import Array, frozen, positive
-from wbc.errors import InputError
+from wbc.arrays import Array, frozen, numbers, positive
+from wbc.checks import named
+from wbc.errors import InputError, shown
 
 __all__ = ["Admittance", "Impedance"]
 
@@ -117,7 +118,7 @@ class Impedance(_Compliant):
         name: str | None = None,
     ) -> None:
         gains = (mass, stiffness, damping)
-        name = name or f"{frame} impedance"
+        name = named(name, f"{frame} impedance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.claims = (f"force of sensor '{sensor}'", f"moment of sensor '{sensor}'")
 
@@ -178,7 +179,7 @@ class Admittance(_Compliant):
         name: str | None = None,
     ) -> None:
         gains = (mass, stiffness, damping)
-        name = name or f"{frame} admittance"
+        name = named(name, f"{frame} admittance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.following = PD(positive(following, "following"))
         self.reset()
@@ -214,10 +215,10 @@ class Admittance(_Compliant):
 
 def _gain(value: ArrayLike, what: str, *, zero: bool = True) -> Array:
     """One number an axis (3,)."""
-    try:
-        gain = frozen(np.broadcast_to(value, (3,)), (3,), what)
-    except ValueError as error:
-        raise InputError(f"{what} must be one number, or three.") from error
+    given = numbers(value, what)
+    if given.shape not in ((), (3,)):
+        raise InputError(f"{what} must be one number, or three, got {shown(value)}.")
+    gain = frozen(np.broadcast_to(given, (3,)), (3,), what)
     if (gain < 0.0).any() or (not zero and (gain == 0.0).any()):
         raise InputError(f"{what} must be {'at least' if zero else 'above'} 0.")
     return gain

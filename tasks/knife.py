@@ -12,7 +12,8 @@ from tasks.evaluator import Code
 from tasks.kernels.pose import INFINITE, NO_ROTATION, take_pose
 from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import Array
-from wbc.errors import InputError, UnknownName
+from wbc.checks import flag, named, text
+from wbc.errors import InputError, UnknownName, shown
 from wbc.kernel import NO_TABLE
 
 __all__ = ["KnifePose"]
@@ -65,11 +66,15 @@ class KnifePose(CatalogueTask):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
+        flag(rocking=rocking)
+        name = named(name, f"{frame} knife pose")
         turned = ("tilt 1", "tilt 2") if rocking else ("R x", "R y", "R z")
         rows = ("p x", "p y", "p z", *turned)
         law = PD(stiffness, damping)
-        super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, (frame,))
-        self.rocking, self.sensor, self.sensor_frame = rocking, sensor, sensor_frame
+        super().__init__(name, "m, rad", rows, law, (frame,))
+        self.rocking = rocking
+        self.sensor = None if sensor is None else text(sensor, f"sensor of '{name}'")
+        self.sensor_frame = text(sensor_frame, f"sensor_frame of '{name}'")
         self._parameters = np.zeros(24)
         self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
         self.set_target(position, orientation)
@@ -87,7 +92,13 @@ class KnifePose(CatalogueTask):
             InputError: unusable values; the target stays as it was.
         """
         given = (position, orientation, twist, acceleration)
-        p, R, V, A = target = [_numbers(x) for x in given]
+        try:
+            p, R, V, A = target = [_numbers(x) for x in given]
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InputError(
+                f"position, orientation, twist and acceleration of '{self.name}' must "
+                f"be numbers, got {shown(given)}."
+            ) from error
         if (p.shape, R.shape, V.shape, A.shape) != SHAPES:
             raise self._misshapen(target)
         fault = take_pose(p, R, V, A, self._parameters)
@@ -146,10 +157,7 @@ class KnifePose(CatalogueTask):
 
 def _numbers(value: ArrayLike) -> Array:
     """A copy in the one memory layout that the kernel is compiled for."""
-    try:
-        return np.array(value, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
-        raise InputError(f"a knife's target must be numbers, got {value!r}.") from error
+    return np.array(value, dtype=np.float64, order="C")
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

@@ -9,9 +9,10 @@ from numpy.typing import ArrayLike
 
 from tasks.base import run_kernel
 from tasks.evaluator import Code, run
-from wbc import Kernel, Robot, Rows, State, Task, UnknownName
+from wbc import Kernel, Robot, Rows, State, Task
 from wbc.arrays import Array, per_row, positive
 from wbc.binding import announce, refuse_in_use
+from wbc.checks import known
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -172,9 +173,7 @@ class JointLimits(Task):
         self.braking = positive(braking, "braking")
         if self.braking > 1.0:
             raise InputError("braking is a share of the acceleration limit, at most 1.")
-        if integrator not in get_args(Integrator):
-            raise UnknownName("integrator", integrator, get_args(Integrator))
-        self.integrator = integrator
+        self.integrator = known("integrator", integrator, get_args(Integrator))
 
     def __setattr__(self, name: str, value: object) -> None:
         refuse_in_use(self, name)

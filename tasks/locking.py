@@ -9,6 +9,7 @@ import numpy as np
 
 from wbc import Robot, Rows, SaturatedPD, State, Task
 from wbc.arrays import positive
+from wbc.checks import names
 from wbc.errors import InputError
 
 __all__ = ["JointLocking"]
@@ -50,7 +51,7 @@ class JointLocking(Task):
     ) -> None:
         super().__init__(name, "rad")
         self.zone = positive(zone, "zone")
-        self.joints = None if joints is None else tuple(joints)
+        self.joints = listed_joints(joints, name)
         self.law = SaturatedPD(stiffness, speed, acceleration)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
@@ -84,3 +85,14 @@ class JointLocking(Task):
             rows.error[row] = error
             wish = self.law.acceleration(rows.error[one], rows.rate[one])
             rows.lower[one] = rows.upper[one] = wish
+
+
+def listed_joints(joints: Sequence[str] | None, task: str) -> tuple[str, ...] | None:
+    """Names of a task's joints, None for all.
+
+    Raises:
+        InputError: not a list of different names, or an empty one.
+    """
+    if joints is None:
+        return None
+    return names(joints, f"joints of '{task}'", some=True)

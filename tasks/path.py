@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tasks.kernels.paths import locate, write_point
-from wbc.arrays import Array, frozen
-from wbc.errors import InputError
+from wbc.arrays import Array, frozen, number
+from wbc.errors import InputError, shown
 
 __all__ = ["Path", "PathPoint", "still"]
 
@@ -55,9 +55,13 @@ class Path(ABC):
         return locate(self.table, frozen(p, (3,), "p"), np.zeros((4, 9)))
 
     def at(self, s: float) -> PathPoint:
-        """Point and frame at s; beyond the ends the path goes on straight."""
+        """Point and frame at s; beyond the ends the path goes on straight.
+
+        Raises:
+            InputError: s is not a finite number.
+        """
         rows = np.zeros((4, 9))
-        write_point(self.table, float(s), rows)
+        write_point(self.table, number(s, "s"), rows)
         return PathPoint(rows)
 
 
@@ -65,8 +69,12 @@ def still(path: Path, task: str) -> Path:
     """The path, which a task follows in the world.
 
     Raises:
-        InputError: something carries it.
+        InputError: it is no path, or something carries it.
     """
+    if not isinstance(path, Path):
+        raise InputError(
+            f"'{task}' follows a path, such as a Line or a Curve, not {shown(path)}."
+        )
     if path.on is not None:
         raise InputError(
             f"'{task}' follows a path in the world, but {path.on!r} carries this one."

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
+from tasks.locking import listed_joints
 from wbc import PD, Damper, Robot
-from wbc.arrays import Array, frozen
+from wbc.arrays import Array, frozen, numbers
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -47,7 +48,7 @@ class Posture(CatalogueTask):
         name: str = "posture",
     ) -> None:
         super().__init__(name, "rad", (), PD(stiffness, damping))
-        self.joints = _listed(joints, name)
+        self.joints = listed_joints(joints, name)
         self._target: Array | None = None
         self._bound: list[weakref.ref[Array]] = []
         if target is not None:
@@ -61,10 +62,11 @@ class Posture(CatalogueTask):
         """
         in_use = [a for a in (ref() for ref in self._bound) if a is not None]
         known = in_use if self._target is None else [self._target, *in_use]
-        shape = known[0].shape if known else np.shape(target)
-        if len(shape) != 1:
+        given = numbers(target, f"target of '{self.name}'")
+        shape = known[0].shape if known else given.shape
+        if len(shape) != 1 or shape == (0,):
             raise InputError(f"target of '{self.name}' must be of shape (n,).")
-        checked = frozen(target, shape, f"target of '{self.name}'")
+        checked = frozen(given, shape, f"target of '{self.name}'")
         if any(array.shape != shape for array in known):
             raise InputError(
                 f"'{self.name}' stands in stacks of different robots: give each one."
@@ -82,11 +84,11 @@ class Posture(CatalogueTask):
         for joint in self.joints or ():
             robot.joint_index(joint)
         super().check(robot)
-        names = self.row_names(robot)
-        if self._target is not None and self._target.size != len(names):
+        count = len(self.row_names(robot))
+        if self._target is not None and self._target.size != count:
             raise InputError(
                 f"target of '{self.name}' has {self._target.size} values, but robot "
-                f"'{robot.name}' needs {len(names)}: was it made for another robot?"
+                f"'{robot.name}' needs {count}: was it made for another robot?"
             )
 
     def parameters(self, robot: Robot) -> Array:
@@ -130,7 +132,7 @@ class Damping(CatalogueTask):
         name: str = "damping",
     ) -> None:
         super().__init__(name, "rad/s", (), Damper(rate))
-        self.joints = _listed(joints, name)
+        self.joints = listed_joints(joints, name)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""
@@ -152,14 +154,6 @@ class Damping(CatalogueTask):
         return np.array(_indices(robot, self.joints), dtype=np.float64)
 
 
-def _listed(joints: Sequence[str] | None, task: str) -> tuple[str, ...] | None:
-    if joints is None:
-        return None
-    if isinstance(joints, str) or len(set(joints)) < len(joints):
-        raise InputError(f"joints of '{task}' must be a list of different names.")
-    return tuple(joints)
-
-
 def _indices(robot: Robot, joints: tuple[str, ...] | None) -> list[int]:
-    names = robot.joint_names
-    return [names.index(joint) for joint in (names if joints is None else joints)]
+    every = robot.joint_names
+    return [every.index(joint) for joint in (every if joints is None else joints)]

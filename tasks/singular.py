@@ -8,6 +8,7 @@ import numpy as np
 
 from wbc import PD, InputError, MotionTask, Robot, Rows, SaturatedPD, State, Task
 from wbc.arrays import Array, positive
+from wbc.checks import expect
 from wbc.rows import allocate_rows
 
 __all__ = ["SingularDamping"]
@@ -60,6 +61,7 @@ class SingularDamping(Task):
         bend: float = 1.0 / 3.0,
         name: str = "singular damping",
     ) -> None:
+        expect(MotionTask, task=task)
         super().__init__(name, "rad/s", task.frames)
         self.task = task
         self._law()

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from tasks.kernels.touch import in_axes
 from wbc import FrameState, Robot, Rows, State, Task
 from wbc.arrays import Array, rotation
+from wbc.checks import text
 from wbc.errors import InputError, SolverError
 
 __all__ = ["TouchTask"]
@@ -49,8 +50,9 @@ class TouchTask(Task):
         sensor: str,
         sensor_frame: str,
     ) -> None:
+        self.sensor_frame = text(sensor_frame, f"sensor_frame of '{name}'")
         super().__init__(name, unit, (frame, sensor_frame))
-        self.frame, self.sensor, self.sensor_frame = frame, sensor, sensor_frame
+        self.frame, self.sensor = frame, text(sensor, f"sensor of '{name}'")
         self.size = rows
         self._R, self._R_d, self._heard = np.eye(3), np.eye(3), False
         if axes is not None:

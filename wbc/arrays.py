@@ -7,13 +7,15 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wbc.errors import InputError
+from wbc.errors import InputError, shown
 
 __all__ = [
     "Array",
     "BoolArray",
     "IntArray",
     "frozen",
+    "number",
+    "numbers",
     "per_row",
     "positive",
     "rotation",
@@ -25,6 +27,22 @@ BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int_]
 
 ROTATION_TOLERANCE = 1e-6
+
+
+def numbers(value: Any, what: str) -> Array:
+    """A copy of `value` as an array of numbers, of any shape, NaN included.
+
+    Raises:
+        InputError: not numeric, ragged, or too large for a floating-point number.
+    """
+    try:
+        if isinstance(value, str | bytes):
+            raise TypeError  # numpy would read "3"
+        return np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(
+            f"{what} is not an array of numbers: {shown(value)}."
+        ) from error
 
 
 def frozen(
@@ -39,13 +57,10 @@ def frozen(
     Raises:
         InputError: wrong shape, not numeric, NaN, or infinite where `finite`.
     """
-    try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{what} is not an array of numbers: {value!r}") from error
+    array = numbers(value, what)
     if array.shape != shape:
         raise InputError(f"{what} has shape {array.shape}; it must be {shape}.")
-    if np.isnan(array).any() or (finite and np.isinf(array).any()):
+    if not (np.isfinite(array) if finite else ~np.isnan(array)).all():
         kind = "finite" if finite else "free of NaN"
         raise InputError(f"{what} must be {kind}, got {array}.")
     array.flags.writeable = False
@@ -86,28 +101,45 @@ def positive(value: Any, what: str, *, zero: bool = False) -> float:
     Raises:
         InputError: not a number, not finite, or of the wrong sign.
     """
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{what} must be a number, got {value!r}.") from error
-    if not np.isfinite(number) or number < 0 or (number == 0 and not zero):
+    x = _scalar(value, what)
+    if not np.isfinite(x) or x < 0 or (x == 0 and not zero):
         bound = "at least 0" if zero else "greater than 0"
-        raise InputError(f"{what} must be finite and {bound}, got {number}.")
-    return number
+        raise InputError(f"{what} must be finite and {bound}, got {x}.")
+    return x
+
+
+def number(value: Any, what: str) -> float:
+    """A finite number of any sign.
+
+    Raises:
+        InputError: not a number, or not finite.
+    """
+    x = _scalar(value, what)
+    if not np.isfinite(x):
+        raise InputError(f"{what} must be finite, got {x}.")
+    return x
+
+
+def _scalar(value: Any, what: str) -> float:
+    try:
+        if isinstance(value, str | bytes) or np.ndim(value) != 0:
+            raise TypeError  # float would read "3", and take what has one element
+        return float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{what} must be a number, got {shown(value)}.") from error
 
 
 def per_row(value: ArrayLike, what: str) -> Array:
     """A gain for all rows (shape ()) or one for each row (m,), never negative.
 
     Raises:
-        InputError: not numeric, more than one axis, not finite, or negative.
+        InputError: not numeric, empty, more than one axis, not finite, or negative.
     """
-    try:
-        gains = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{what} must be a number or one number a row.") from error
-    if gains.ndim > 1:
-        raise InputError(f"{what} must be a number or one number a row.")
+    gains = numbers(value, what)
+    if gains.ndim > 1 or not gains.size:
+        raise InputError(
+            f"{what} must be a number or one number a row, got {shown(value)}."
+        )
     if not np.isfinite(gains).all() or (gains < 0).any():
         raise InputError(f"{what} must be finite and at least 0, got {gains}.")
     gains.flags.writeable = False

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, positive
 from wbc.assembly import finite, measured
-from wbc.errors import InputError, ModelError, SolverError
+from wbc.checks import expect
+from wbc.errors import InputError, ModelError, SolverError, shown
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP
 from wbc.resolver import Answer, Resolver, Status
@@ -55,7 +56,7 @@ class Controller:
         dt: float = 1e-3,
     ) -> None:
         if not isinstance(robot, Robot):
-            raise InputError(f"expected a Robot, got {robot!r}.")
+            raise InputError(f"expected a Robot, got {shown(robot)}.")
         self.robot = robot
         self.hierarchy = Hierarchy.of(hierarchy)
         self.resolver = HierarchicalQP() if resolver is None else resolver
@@ -84,16 +85,21 @@ class Controller:
             wrenches: sensor name -> (6,) robot on environment, world axes [N, Nm].
 
         Raises:
-            InputError: q or v has the wrong shape, which is no sensor fault.
+            InputError: an argument has the wrong shape or is no number, which is no
+                sensor fault.
         """
-        q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
+        forces = self._no_wrench
+        try:
+            q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
+            t = float(t)
+            if wrenches:
+                forces = {k: _wrench(k, w) for k, w in wrenches.items()}
+        except (TypeError, ValueError, OverflowError, AttributeError) as error:
+            raise _unreadable(error, q, v, t, wrenches) from error
         if q.shape != self._shape or v.shape != self._shape:
             raise InputError(
                 f"q and v have shapes {q.shape}, {v.shape}; need {self._shape}."
             )
-        forces, t = self._no_wrench, float(t)
-        if wrenches:
-            forces = {k: _wrench(k, w) for k, w in wrenches.items()}
         if not self._finite(q, v, t, forces):
             return self._hold(
                 q, v, Status.SENSOR_INVALID, "a measurement is not finite"
@@ -126,7 +132,8 @@ class Controller:
             UnknownName, InputError: a task does not fit the robot, `over` is negative,
                 or the rate is not greater than 0; all stays as it was.
         """
-        wanted, resolver = Hierarchy.of(hierarchy), resolver or self.resolver
+        wanted = Hierarchy.of(hierarchy)
+        resolver = self.resolver if resolver is None else resolver
         ticks = round(positive(over, "over", zero=True) / self.dt)
         most = positive(rate, "rate") * self.dt
         bound = Bound(self.robot, wanted, resolver)
@@ -201,6 +208,17 @@ class Controller:
         )
 
 
+def _unreadable(error: Exception, *given: object) -> InputError:
+    """What to raise where measurements (q, v, t, wrenches) are no numbers."""
+    if isinstance(error, InputError):
+        return error
+    q, v, t, wrenches = map(shown, given)
+    return InputError(
+        "q and v must be arrays of numbers, t a number, and wrenches a mapping of "
+        f"sensors to (6,); got q = {q}, v = {v}, t = {t}, wrenches = {wrenches}."
+    )
+
+
 def _wrench(sensor: str, value: ArrayLike) -> Array:
     """A measured wrench (6,), which may be NaN but not of another shape."""
     wrench = np.array(value, dtype=np.float64)
@@ -219,9 +237,12 @@ def resolve(
     """Resolve one state once, without a controller: for study and for tests.
 
     Raises:
-        UnknownName, InputError: a task does not fit the robot.
+        UnknownName, InputError: a task does not fit the robot, or an argument is of
+            the wrong kind.
         SolverError: the resolver found no solution.
     """
-    bound = Bound(state.robot, Hierarchy.of(hierarchy), resolver or HierarchicalQP())
+    expect(State, state=state)
+    resolver = HierarchicalQP() if resolver is None else resolver
+    bound = Bound(state.robot, Hierarchy.of(hierarchy), resolver)
     torque, answer = bound.tick(state)
     return Solution(bound.stack, torque, answer, answer.status)

@@ -13,7 +13,11 @@ __all__ = [
     "StaleError",
     "UnknownName",
     "WbcError",
+    "shown",
 ]
+
+LONGEST = 100
+"""Characters of an unusable value that a message shows."""
 
 
 class WbcError(Exception):
@@ -42,10 +46,12 @@ class UnknownName(WbcError, LookupError):
 
     def __init__(self, kind: str, name: str, valid: Iterable[str]) -> None:
         self.kind, self.name, self.valid = kind, name, tuple(valid)
-        close = get_close_matches(name, self.valid, n=1)
+        close: list[str] = []
+        if isinstance(name, str):
+            close = get_close_matches(name, self.valid, n=1)
         hint = f" Did you mean '{close[0]}'?" if close else ""
         names = ", ".join(self.valid) or "(none)"
-        super().__init__(f"unknown {kind} '{name}'.{hint} Valid names: {names}.")
+        super().__init__(f"unknown {kind} {shown(name)}.{hint} Valid names: {names}.")
 
 
 @final
@@ -64,3 +70,14 @@ class SolverError(WbcError, RuntimeError):
 @final
 class StaleError(WbcError, RuntimeError):
     """A view of a tick that a later tick has overwritten."""
+
+
+def shown(value: object) -> str:
+    """An unusable value in one line of a message, cut where it is long."""
+    try:
+        text = " ".join(repr(value).split())
+    except (
+        Exception
+    ):  # whatever its author's repr raises, or a number too long to print
+        return f"a value of type {type(value).__name__}"
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, final
 
 from wbc.analysis import Analysis, Metric, analyse
 from wbc.arrays import positive
-from wbc.errors import InputError
+from wbc.errors import InputError, shown
 from wbc.linalg import RANK_TOLERANCE
 from wbc.task import Task
 
@@ -24,15 +24,18 @@ class Level:
     Attributes:
         terms: (task, weight) pairs; a weight multiplies its task's residual, so the
             level minimises the sum of (weight * residual)^2.
+
+    Raises:
+        InputError: no pair, or one that is not of a task and a positive number.
     """
 
     __slots__ = ("terms",)
     __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, terms: tuple[tuple[Task, float], ...]) -> None:
-        if not terms:
+        self.terms = _pairs(terms)
+        if not self.terms:
             raise InputError("a level needs at least one task.")
-        self.terms = terms
 
     @classmethod
     def of(cls, item: Task | Level) -> Level:
@@ -50,7 +53,10 @@ class Level:
                 "'+' joins tasks of one level; it cannot join a hierarchy. "
                 "'a + b >> c' reads (a + b) >> c."
             )
-        raise InputError(f"expected a task, got {item!r}.")
+        raise InputError(
+            f"expected a task, got {shown(item)}: a Hierarchy consists of tasks, or "
+            "of a Level of several."
+        )
 
     def __add__(self, other: Task | Level) -> Level:
         return Level(self.terms + Level.of(other).terms)
@@ -139,6 +145,21 @@ class Hierarchy:
 
     def __repr__(self) -> str:
         return " >> ".join(f"({level!r})" for level in self.levels)
+
+
+def _pairs(terms: Iterable[tuple[Task, float]]) -> tuple[tuple[Task, float], ...]:
+    """Checked terms of a level."""
+    try:
+        pairs = tuple((task, weight) for task, weight in terms)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"terms of a level are pairs of a task and its weight, not {shown(terms)}."
+        ) from error
+    for task, weight in pairs:
+        if not isinstance(task, Task):
+            raise InputError(f"expected a task in a level's terms, got {shown(task)}.")
+        positive(weight, f"weight of '{task.name}'")
+    return pairs
 
 
 def _refuse_shared_claims(tasks: Iterator[Task]) -> None:

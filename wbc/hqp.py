@@ -9,10 +9,10 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, BoolArray
+from wbc.arrays import Array, BoolArray, numbers
 from wbc.cascade import Cascade, CascadeResult, LevelRows
 from wbc.certificate import Certificate, certify
-from wbc.errors import InputError
+from wbc.errors import InputError, shown
 from wbc.lexicographic import Lexicographic
 from wbc.qp import DEFAULT_BACKEND, QpBackend
 from wbc.resolver import Answer, Resolver, Solver, Status
@@ -177,7 +177,7 @@ def _alone(rows: list[LevelRows], _: str | None) -> tuple[CascadeResult, Status]
 def _cascade(rows: list[LevelRows], name: str | None) -> tuple[CascadeResult, Status]:
     """By a cascade over a QP backend."""
     n = rows[0][0].shape[1]
-    backend = QpBackend(name or DEFAULT_BACKEND)
+    backend = QpBackend(DEFAULT_BACKEND if name is None else name)
     return Cascade(backend).solve(rows, n), Status.SOLVED
 
 
@@ -189,12 +189,18 @@ def _at_bound(value: Array, lower: Array, upper: Array) -> BoolArray:
 def _checked(
     levels: Sequence[tuple[ArrayLike, ArrayLike, ArrayLike]],
 ) -> list[LevelRows]:
-    if not levels:
+    try:
+        triples = [(A, lower, upper) for A, lower, upper in levels]
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"levels must be triples (A, lower, upper), got {shown(levels)}."
+        ) from error
+    if not triples:
         raise InputError("solve_hierarchy needs at least one level.")
     rows: list[LevelRows] = []
-    for k, (A, lower, upper) in enumerate(levels, 1):
-        matrix = np.array(A, dtype=np.float64)
-        low, high = (np.array(b, dtype=np.float64) for b in (lower, upper))
+    for k, (A, lower, upper) in enumerate(triples, 1):
+        matrix = numbers(A, f"A of level {k}")
+        low, high = (numbers(b, f"a bound of level {k}") for b in (lower, upper))
         n = rows[0][0].shape[1] if rows else matrix.shape[-1] if matrix.ndim else 0
         if matrix.ndim != 2 or matrix.shape[1] != n or n == 0:
             raise InputError(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array
+from wbc.arrays import Array, numbers
 from wbc.errors import InputError, ModelError, UnknownName
 
 __all__ = ["Limit", "Limits", "braking_acceleration", "joint_limits"]
@@ -126,7 +126,9 @@ def _position_limits(
     absent = ~np.isfinite(lower) | ~np.isfinite(upper) | (np.abs(upper) > 1e30)
     absent |= np.abs(lower) > 1e30
     if given is not None:
-        half = _limit("position_limit", joints, given, np.full(len(joints), np.nan))
+        half = _limit("position_limit", joints, given, None)
+        if not isinstance(given, Mapping) and np.isnan(half).any():
+            raise InputError(f"position_limit must be free of NaN, got {half}.")
         stated = ~np.isnan(half)
         lower, upper = np.where(stated, -half, lower), np.where(stated, half, upper)
         absent &= ~stated
@@ -154,14 +156,11 @@ def _limit(
         for joint, value in given.items():
             if joint not in joints:
                 raise UnknownName("joint", joint, joints)
-            limit[joints.index(joint)] = value
-    elif given is not None:
-        values = np.asarray(given, dtype=np.float64)
-        if values.shape not in ((), (n,)):
-            raise InputError(
-                f"{what} has shape {values.shape}; it must be () or ({n},)."
+            limit[joints.index(joint)] = _stated(
+                value, f"{what} of joint '{joint}'", ()
             )
-        limit[:] = values
+    elif given is not None:
+        limit[:] = _stated(given, what, (), (n,))
     if what != "position_limit" and np.isnan(limit).any():
         raise _missing(
             what, [j for j, x in zip(joints, limit, strict=True) if np.isnan(x)]
@@ -170,6 +169,15 @@ def _limit(
         bad = joints[int(np.argmax(limit <= 0))]
         raise InputError(f"{what} of joint '{bad}' must be greater than 0.")
     return limit
+
+
+def _stated(given: Any, what: str, *shapes: tuple[int, ...]) -> Array:
+    """Numbers of one of these shapes; NaN says that it is missing."""
+    values = numbers(given, what)
+    if values.shape not in shapes:
+        allowed = " or ".join(map(str, shapes))
+        raise InputError(f"{what} has shape {values.shape}; it must be {allowed}.")
+    return values
 
 
 def _missing(what: str, joints: Sequence[str]) -> ModelError:

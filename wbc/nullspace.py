@@ -15,8 +15,9 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias, final, get_args
 
+from wbc.checks import known
 from wbc.damped import DampedInverse
-from wbc.errors import InputError, UnknownName
+from wbc.errors import InputError, shown
 from wbc.resolver import Resolver, Solver
 from wbc.saturation import Saturation
 from wbc.stack import Stack
@@ -48,12 +49,11 @@ class NullSpace(Resolver):
     def __init__(
         self, law: LawName = "wbcf", damping: DampedInverse | None = None
     ) -> None:
-        if law not in get_args(LawName):
-            raise UnknownName("projection law", law, get_args(LawName))
+        known("projection law", law, get_args(LawName))
         if damping is not None and not isinstance(damping, DampedInverse):
             raise InputError(
                 "damping must be None or a DampedInverse, such as DampedInverse(), not "
-                f"{damping!r}."
+                f"{shown(damping)}."
             )
         self.law, self.damping = law, damping
         self.name = "nullspace" if law == "wbcf" else f"nullspace:{law}"

@@ -9,7 +9,8 @@ import numpy as np
 import qpsolvers
 
 from wbc.arrays import Array
-from wbc.errors import SolverError, UnknownName
+from wbc.checks import known
+from wbc.errors import SolverError
 
 __all__ = ["DEFAULT_BACKEND", "QpBackend", "backends"]
 
@@ -46,9 +47,7 @@ class QpBackend:
     """
 
     def __init__(self, name: str = DEFAULT_BACKEND) -> None:
-        if name not in qpsolvers.available_solvers:
-            raise UnknownName("QP backend", name, backends())
-        self.name = name
+        self.name = known("QP backend", name, backends())
         self._options = OPTIONS.get(name, {})
 
     def solve(

@@ -11,8 +11,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, frozen
-from wbc.errors import ModelError, UnknownName
+from wbc.arrays import Array, frozen, number, positive
+from wbc.checks import expect, named
+from wbc.errors import InputError, ModelError, UnknownName, shown
 from wbc.limits import Limit, joint_limits
 from wbc.mjcf import read_mjcf
 
@@ -79,7 +80,9 @@ class Robot:
         Raises:
             ModelError: no such file, a limit is missing, or Pinocchio would read
                 the file differently from MuJoCo.
+            InputError: a limit, the home posture or the name is unusable.
         """
+        expect(str | Path, source=source)
         mjcf = read_mjcf(source)
         limits = {
             "position_limit": position_limit,
@@ -111,7 +114,9 @@ class Robot:
         Raises:
             ModelError: no such file, not a URDF, or a limit is missing (a URDF's
                 effort or velocity of 0 counts as missing).
+            InputError: as for `from_mjcf`.
         """
+        expect(str | Path, path=path)
         if not Path(path).is_file():
             raise ModelError(f"there is no model file '{path}'.")
         try:
@@ -142,9 +147,10 @@ class Robot:
         Raises:
             UnknownName: there is no such joint.
         """
-        if name not in self.joint_names:
-            raise UnknownName("joint", name, self.joint_names)
-        return self.joint_names.index(name)
+        try:
+            return self.joint_names.index(name)
+        except ValueError:  # what is no string, too
+            raise UnknownName("joint", name, self.joint_names) from None
 
     def frame_id(self, name: str) -> int:
         """Pinocchio's index of a frame.
@@ -152,9 +158,10 @@ class Robot:
         Raises:
             UnknownName: there is no such frame.
         """
-        if name not in self._frames:
-            raise UnknownName("frame", name, self._frames)
-        return self._frames[name]
+        try:
+            return self._frames[name]
+        except (KeyError, TypeError):  # what is no string, too
+            raise UnknownName("frame", name, self._frames) from None
 
     def state(
         self,
@@ -167,19 +174,21 @@ class Robot:
         """The state at position q (n,), velocity v (n,) (default 0), time t [s].
 
         Raises:
-            InputError: wrong shape, NaN or infinite.
+            InputError: wrong shape, NaN or infinite, or dt is not greater than 0.
         """
         from wbc.state import State
 
         v = np.zeros(self.nv) if v is None else v
-        checked = {
-            key: frozen(value, (6,), f"wrench '{key}'")
-            for key, value in (wrenches or {}).items()
-        }
-        state = State(self, dt)
-        state.refresh(
-            frozen(q, (self.nv,), "q"), frozen(v, (self.nv,), "v"), t, checked
-        )
+        wrenches = {} if wrenches is None else wrenches
+        if not isinstance(wrenches, Mapping):
+            raise InputError(
+                "wrenches must be a mapping {sensor name: (6,)}, not "
+                f"{shown(wrenches)}."
+            )
+        felt = {k: frozen(w, (6,), f"wrench '{k}'") for k, w in wrenches.items()}
+        q, v = frozen(q, (self.nv,), "q"), frozen(v, (self.nv,), "v")
+        state = State(self, positive(dt, "dt"))
+        state.refresh(q, v, number(t, "t"), felt)
         return state
 
     def __repr__(self) -> str:
@@ -210,7 +219,7 @@ def _assemble(
             if frame.type & (kind | pin.FrameType.FIXED_JOINT):
                 frames[frame.name] = index
     return Robot(
-        name or model.name or "robot",
+        named(name, model.name or "robot"),
         model,
         joints,
         frozen(found.box[0], (n,), "q_min", finite=False),

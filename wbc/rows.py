@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from wbc.arrays import Array
+from wbc.errors import InputError, shown
 
 __all__ = ["Rows", "Space", "allocate_rows", "rows_over"]
 
@@ -51,5 +52,15 @@ def rows_over(A: Array, bands: Array) -> Rows:
 
 
 def allocate_rows(m: int, n: int) -> Rows:
-    """M rows of zeros for n joints."""
-    return rows_over(np.zeros((m, n)), np.zeros((5, m)))
+    """M rows of zeros for n joints.
+
+    Raises:
+        InputError: m or n is not a whole number of at least 0.
+    """
+    try:
+        return rows_over(np.zeros((m, n)), np.zeros((5, m)))
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            "numbers of rows and joints, m and n, must be whole and at least 0, got "
+            f"{shown(m)} and {shown(n)}."
+        ) from error

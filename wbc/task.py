@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from wbc.arrays import Array
 from wbc.binding import announce
-from wbc.errors import InputError
+from wbc.checks import expect, names, text
+from wbc.errors import InputError, shown
 from wbc.kernel import Kernel
 from wbc.law import Law
 from wbc.rows import Rows, Space
@@ -30,6 +31,9 @@ class Task(ABC):
         name: how reports call it.
         unit: of each row's error, such as "m".
         frames: names of the robot's frames that it reads.
+
+    Raises:
+        InputError: one of these is not a string.
     """
 
     space: Space = "acceleration"
@@ -38,7 +42,12 @@ class Task(ABC):
     __array_ufunc__ = None  # numpy leaves products with arrays to `__rmul__`
 
     def __init__(self, name: str, unit: str, frames: tuple[str, ...] = ()) -> None:
-        self.name, self.unit, self.frames = name, unit, frames
+        kind = type(self).__name__
+        self.name = text(name, f"name of a {kind}")
+        expect(str, **{f"unit of {kind} '{name}'": unit})
+        self.unit = unit
+        expect(tuple | list, frames=frames)
+        self.frames = tuple(text(frame, f"frame of a {kind}") for frame in frames)
 
     @abstractmethod
     def row_names(self, robot: Robot) -> tuple[str, ...]:
@@ -139,7 +148,7 @@ class MotionTask(Task):
         frames: tuple[str, ...] = (),
     ) -> None:
         super().__init__(name, unit, frames)
-        self.rows = rows
+        self.rows = names(rows, f"rows of {type(self).__name__} '{self.name}'")
         self.law = law
 
     @property
@@ -154,7 +163,7 @@ class MotionTask(Task):
     @law.setter
     def law(self, law: Law) -> None:
         if not isinstance(law, Law):
-            raise InputError(f"law of '{self.name}' must be a Law, got {law!r}.")
+            raise InputError(f"law of '{self.name}' must be a Law, got {shown(law)}.")
         before, self._law = getattr(self, "_law", law), law
         try:
             announce(self)

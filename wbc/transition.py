@@ -18,7 +18,7 @@ from typing import final
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.errors import InputError, SolverError
+from wbc.errors import InputError, SolverError, shown
 from wbc.hierarchy import Hierarchy
 from wbc.resolver import Answer, Resolver, Status
 from wbc.robot import Robot
@@ -49,7 +49,7 @@ class Bound:
         if not isinstance(resolver, Resolver):
             raise InputError(
                 f"expected a resolver such as HierarchicalQP() or NullSpace(), got "
-                f"{resolver!r}."
+                f"{shown(resolver)}."
             )
         self.hierarchy = hierarchy
         self.stack = Stack(robot, hierarchy)

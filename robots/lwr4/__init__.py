@@ -14,6 +14,7 @@ from typing import Final
 from robots import tools
 from robots.assembly import mount
 from wbc import Robot
+from wbc.checks import flag
 
 __all__ = ["COULOMB", "VISCOUS", "load", "mjcf"]
 
@@ -37,7 +38,9 @@ def mjcf(
 
     Raises:
         UnknownName: there is no tool of that name.
+        InputError: `rotors` or `friction` is not True or False.
     """
+    flag(rotors=rotors, friction=friction)
     arm = files(__name__).joinpath("lwr4.xml").read_text(encoding="utf-8")
     arm = _with_joints(arm, rotors, friction)
     return arm if tool is None else mount(arm, tools.mjcf(tool), at="flange")

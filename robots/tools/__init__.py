@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-from wbc.errors import UnknownName
+from wbc.checks import known
 
 __all__ = ["mjcf", "names"]
 
@@ -21,6 +21,5 @@ def mjcf(name: str) -> str:
     Raises:
         UnknownName: there is no tool of that name.
     """
-    if name not in names():
-        raise UnknownName("tool", name, names())
+    known("tool", name, names())
     return files(__name__).joinpath(f"{name}.xml").read_text(encoding="utf-8")

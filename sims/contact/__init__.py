@@ -7,6 +7,7 @@ from sims.contact.scene import CRANK, HOLE, scene
 from sims.mismatch import Mismatch
 from sims.wrist import WristSensor
 from wbc import Robot
+from wbc.checks import expect
 
 __all__ = ["CRANK", "HOLE", "cell"]
 
@@ -27,6 +28,7 @@ def cell(
         seed: of the mismatch.
         wrist: the force/torque sensor; a perfect one by default.
     """
-    differs = Mismatch(seed=seed) if mismatch else None
-    wrist = wrist or WristSensor()
+    expect(Robot, robot=robot)
+    differs = Mismatch.when(mismatch, seed)
+    wrist = WristSensor() if wrist is None else wrist
     return ArmCell("contact", robot, scene(robot), mismatch=differs, wrist=wrist)

@@ -8,6 +8,7 @@ from sims.grasping.scene import GOAL, STAND, scene
 from sims.mismatch import Mismatch
 from sims.sensors import Encoders
 from wbc import Robot
+from wbc.checks import expect
 
 __all__ = ["GOAL", "STAND", "Cylinder", "cell", "seeded_cylinders"]
 
@@ -30,6 +31,8 @@ def cell(
         seed: of the mismatch.
         encoders: joint sensors; perfect by default.
     """
-    differs = Mismatch(seed=seed) if mismatch else None
+    expect(Robot, robot=robot)
+    differs = Mismatch.when(mismatch, seed)
+    expect(Cylinder | None, cylinder=cylinder)
     spec = scene(robot, cylinder)
     return ArmCell("grasping", robot, spec, mismatch=differs, encoders=encoders)

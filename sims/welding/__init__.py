@@ -7,6 +7,7 @@ from sims.mismatch import Mismatch
 from sims.sensors import Encoders
 from sims.welding.workpiece import CURVE, POINT, SEAM, scene
 from wbc import Robot
+from wbc.checks import expect
 
 __all__ = ["CURVE", "POINT", "SEAM", "cell"]
 
@@ -27,5 +28,6 @@ def cell(
         seed: of the mismatch.
         encoders: joint sensors; perfect by default.
     """
-    differs = Mismatch(seed=seed) if mismatch else None
+    expect(Robot, robot=robot)
+    differs = Mismatch.when(mismatch, seed)
     return ArmCell("welding", robot, scene(robot), mismatch=differs, encoders=encoders)

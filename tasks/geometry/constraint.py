@@ -14,7 +14,8 @@ from tasks.geometry.features import Carrier, Point, perpendicular
 from tasks.geometry.moving import MovingFrame
 from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import Array, frozen
-from wbc.errors import InputError, UnknownName
+from wbc.checks import known
+from wbc.errors import InputError
 from wbc.kernel import WORLD
 
 __all__ = [
@@ -22,7 +23,6 @@ __all__ = [
     "Sense",
     "angle_between",
     "as_point",
-    "expect",
     "parallel",
     "relation",
 ]
@@ -135,9 +135,7 @@ def parallel(a: Array, n: Array, sense: str) -> Direction:
     Raises:
         UnknownName: no such sense.
     """
-    if sense not in SENSES:
-        raise UnknownName("sense", sense, get_args(Sense))
-    return 1.0, SENSES[sense], 0.0, _triad(a), n
+    return 1.0, SENSES[known("sense", sense, get_args(Sense))], 0.0, _triad(a), n
 
 
 def angle_between(a: Array, n: Array, angle: float) -> Direction:
@@ -156,20 +154,6 @@ def as_point(point: str | Point | ArrayLike, what: str = "the point") -> Point:
     if isinstance(point, str):
         return Point(on=point)
     return Point(frozen(point, (3,), what))
-
-
-def expect(kind: type, *features: object) -> None:
-    """See that features are of a kind.
-
-    Raises:
-        InputError: one is not.
-    """
-    for feature in features:
-        if not isinstance(feature, kind):
-            raise InputError(
-                f"this constraint needs a {kind.__name__}, not "
-                f"{type(feature).__name__}: {feature!r}."
-            )
 
 
 def _triad(a: Array) -> Array:

@@ -7,10 +7,11 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import Constraint, as_point, expect, relation
+from tasks.geometry.constraint import Constraint, as_point, relation
 from tasks.geometry.features import Line, Plane, Point
 from tasks.geometry.points import carrier_name
-from wbc.arrays import frozen, positive
+from wbc.arrays import number, positive
+from wbc.checks import expect, named
 
 __all__ = ["DistanceToLine", "DistanceToPlane", "DistanceToPoint"]
 
@@ -47,8 +48,8 @@ class DistanceToPoint(Constraint):
         name: str | None = None,
     ) -> None:
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} distance to point"
-        b = as_point(target, f"point of '{name}'")
+        name = named(name, f"{carrier_name(a.on)} distance to point")
+        b = as_point(target, f"target point of '{name}'")
         p = relation(
             point=a.position,
             origin=b.position,
@@ -89,9 +90,9 @@ class DistanceToLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, line)
+        expect(Line, line=line)
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} distance to line"
+        name = named(name, f"{carrier_name(a.on)} distance to line")
         p = relation(
             point=a.position,
             origin=line.point,
@@ -129,10 +130,10 @@ class DistanceToPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Plane, plane)
+        expect(Plane, plane=plane)
         a, n = as_point(point), plane.normal
-        name = name or f"{carrier_name(a.on)} distance to plane"
-        away = float(frozen(distance, (), f"distance of '{name}'"))
+        name = named(name, f"{carrier_name(a.on)} distance to plane")
+        away = number(distance, f"distance of '{name}'")
         origin = plane.point + away * n
         p = relation(point=a.position, origin=origin, along=(n,))
         super().__init__(a.on, plane.on, p, name, stiffness, damping)

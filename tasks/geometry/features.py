@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from tasks.geometry.moving import MovingFrame
 from tasks.path import Path
 from wbc.arrays import Array, frozen, positive, unit
-from wbc.errors import InputError
+from wbc.errors import InputError, shown
 
 __all__ = [
     "Carrier",
@@ -111,9 +111,13 @@ class Plane:
         self.normal = unit(normal, "the plane's normal")
         self.on = _carrier(on, "plane")
 
-    def distance(self, p: Array) -> float:
-        """Signed distance [m] of p (3,), positive on the normal's side."""
-        return float(self.normal @ (p - self.point))
+    def distance(self, p: ArrayLike) -> float:
+        """Signed distance [m] of p (3,), positive on the normal's side.
+
+        Raises:
+            InputError: p is not of shape (3,), or not finite.
+        """
+        return float(self.normal @ (frozen(p, (3,), "p") - self.point))
 
 
 @final
@@ -207,5 +211,5 @@ def _carrier(on: Carrier, feature: str) -> Carrier:
         return on
     raise InputError(
         f"a {feature} is carried by a frame of the robot (its name), by a MovingFrame "
-        f"or by the world (None), not by {on!r}."
+        f"or by the world (None), not by {shown(on)}: on=..."
     )

@@ -11,13 +11,13 @@ from tasks.geometry.constraint import (
     Constraint,
     Sense,
     angle_between,
-    expect,
     parallel,
     relation,
 )
 from tasks.geometry.features import Line, Plane
 from tasks.geometry.points import carrier_name
-from wbc.arrays import frozen
+from wbc.arrays import number
+from wbc.checks import expect, named
 from wbc.errors import InputError
 
 __all__ = [
@@ -60,8 +60,8 @@ class LineOnLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, first, second)
-        name = name or f"{carrier_name(first.on)} line on line"
+        expect(Line, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} line on line")
         p = relation(
             point=first.point,
             origin=second.point,
@@ -103,8 +103,8 @@ class ParallelLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, first, second)
-        name = name or f"{carrier_name(first.on)} parallel"
+        expect(Line, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} parallel")
         p = relation(direction=parallel(first.direction, second.direction, sense))
         super().__init__(first.on, second.on, p, name, stiffness, damping)
 
@@ -135,8 +135,8 @@ class PerpendicularLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, first, second)
-        name = name or f"{carrier_name(first.on)} perpendicular"
+        expect(Line, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} perpendicular")
         turn = angle_between(first.direction, second.direction, 0.5 * np.pi)
         p = relation(direction=turn)
         super().__init__(first.on, second.on, p, name, stiffness, damping)
@@ -173,9 +173,9 @@ class AngleBetweenLines(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, first, second)
-        name = name or f"{carrier_name(first.on)} angle"
-        wanted = float(frozen(angle, (), f"angle of '{name}'"))
+        expect(Line, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} angle")
+        wanted = number(angle, f"angle of '{name}'")
         if not 0.0 < wanted < np.pi:
             raise InputError(
                 f"angle of '{name}' must lie between 0 and pi, got {wanted}: for lines "
@@ -212,9 +212,9 @@ class LineInPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, line)
-        expect(Plane, plane)
-        name = name or f"{carrier_name(line.on)} line in plane"
+        expect(Line, line=line)
+        expect(Plane, plane=plane)
+        name = named(name, f"{carrier_name(line.on)} line in plane")
         p = relation(
             point=line.point,
             origin=plane.point,

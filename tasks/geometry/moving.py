@@ -9,7 +9,8 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, frozen, rotation
+from wbc.arrays import Array, frozen, number, rotation
+from wbc.checks import expect, text
 from wbc.errors import InputError
 from wbc.relative import MOVING_SIZE
 
@@ -62,9 +63,12 @@ class MovingFrame:
         *,
         name: str = "moving frame",
     ) -> None:
-        self.name, self.block = name, np.zeros(MOVING_SIZE)
+        self.name = text(name, "name of a MovingFrame")
+        self.block = np.zeros(MOVING_SIZE)
         self.motion = motion if callable(motion) else None
-        first = motion(0.0) if callable(motion) else motion or FrameMotion()
+        given = FrameMotion() if motion is None else motion
+        first = given(0.0) if callable(given) else given
+        expect(FrameMotion, **{f"motion of '{name}'": first})
         self._write(first)
 
     @classmethod
@@ -98,7 +102,7 @@ class MovingFrame:
         a = frozen(acceleration, (3,), "acceleration")
         twist, change = np.concatenate([v, omega]), np.concatenate([a, np.zeros(3)])
         frame._write(FrameMotion(position, orientation, twist, change))
-        frame.block[24] = frozen(start, (), "start")
+        frame.block[24] = number(start, "start")
         frame.block[25] = 1.0
         return frame
 

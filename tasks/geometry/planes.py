@@ -6,9 +6,10 @@ from typing import final
 
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import Constraint, Sense, expect, parallel, relation
+from tasks.geometry.constraint import Constraint, Sense, parallel, relation
 from tasks.geometry.features import Plane
 from tasks.geometry.points import carrier_name
+from wbc.checks import expect, named
 
 __all__ = ["ParallelPlanes", "PlaneOnPlane"]
 
@@ -42,8 +43,8 @@ class ParallelPlanes(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Plane, first, second)
-        name = name or f"{carrier_name(first.on)} parallel planes"
+        expect(Plane, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} parallel planes")
         p = relation(direction=parallel(first.normal, second.normal, sense))
         super().__init__(first.on, second.on, p, name, stiffness, damping)
 
@@ -78,8 +79,8 @@ class PlaneOnPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Plane, first, second)
-        name = name or f"{carrier_name(first.on)} plane on plane"
+        expect(Plane, first=first, second=second)
+        name = named(name, f"{carrier_name(first.on)} plane on plane")
         p = relation(
             point=first.point,
             origin=second.point,

@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import Constraint, as_point, expect, relation
+from tasks.geometry.constraint import Constraint, as_point, relation
 from tasks.geometry.features import (
     Carrier,
     Circle,
@@ -18,6 +18,7 @@ from tasks.geometry.features import (
     perpendicular,
 )
 from tasks.geometry.moving import MovingFrame
+from wbc.checks import expect, named
 
 __all__ = [
     "PointOnCircle",
@@ -58,8 +59,8 @@ class PointOnPoint(Constraint):
         name: str | None = None,
     ) -> None:
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} on point"
-        b = as_point(target, f"point of '{name}'")
+        name = named(name, f"{carrier_name(a.on)} on point")
+        b = as_point(target, f"target point of '{name}'")
         p = relation(point=a.position, origin=b.position, along=tuple(np.eye(3)))
         super().__init__(a.on, b.on, p, name, stiffness, damping)
 
@@ -90,9 +91,9 @@ class PointOnLine(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Line, line)
+        expect(Line, line=line)
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} on line"
+        name = named(name, f"{carrier_name(a.on)} on line")
         p = relation(point=a.position, origin=line.point, along=tuple(line.normals))
         super().__init__(a.on, line.on, p, name, stiffness, damping)
 
@@ -123,9 +124,9 @@ class PointOnPlane(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Plane, plane)
+        expect(Plane, plane=plane)
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} on plane"
+        name = named(name, f"{carrier_name(a.on)} on plane")
         p = relation(point=a.position, origin=plane.point, along=(plane.normal,))
         super().__init__(a.on, plane.on, p, name, stiffness, damping)
 
@@ -159,9 +160,9 @@ class PointOnCircle(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Circle, circle)
+        expect(Circle, circle=circle)
         a, n = as_point(point), circle.normal
-        name = name or f"{carrier_name(a.on)} on circle"
+        name = named(name, f"{carrier_name(a.on)} on circle")
         p = relation(
             point=a.position,
             origin=circle.centre,
@@ -200,9 +201,9 @@ class PointOnCylinder(Constraint):
         damping: ArrayLike | None = None,
         name: str | None = None,
     ) -> None:
-        expect(Cylinder, cylinder)
+        expect(Cylinder, cylinder=cylinder)
         a = as_point(point)
-        name = name or f"{carrier_name(a.on)} on cylinder"
+        name = named(name, f"{carrier_name(a.on)} on cylinder")
         p = relation(
             point=a.position,
             origin=cylinder.top,

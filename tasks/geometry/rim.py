@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.geometry.constraint import expect
 from tasks.geometry.distances import DistanceToLine, DistanceToPlane
 from tasks.geometry.features import Cylinder, Line, Plane
 from tasks.geometry.lines import LineInPlane, ParallelLines, PerpendicularLines
 from wbc import Level
-from wbc.arrays import positive, unit
+from wbc.arrays import number, positive, unit
+from wbc.checks import expect, text
 from wbc.errors import InputError
 
 __all__ = ["rim_grasp"]
@@ -55,7 +55,8 @@ def rim_grasp(
     Raises:
         InputError: axes that are not at a right angle, an unusable number or gain.
     """
-    expect(Cylinder, cylinder)
+    expect(Cylinder, cylinder=cylinder)
+    text(name, "name")
     b1, b2 = unit(approach, "approach"), unit(closing, "closing")
     if abs(b1 @ b2) > 1e-6:
         raise InputError("approach and closing of a gripper must be at a right angle.")
@@ -73,7 +74,12 @@ def rim_grasp(
             frame, axis, r, stiffness=stiffness, damping=damping, name=f"{name} radius"
         )
         + DistanceToPlane(
-            frame, top, -depth, stiffness=stiffness, damping=damping, name=f"{name} top"
+            frame,
+            top,
+            -number(depth, "depth"),
+            stiffness=stiffness,
+            damping=damping,
+            name=f"{name} top",
         )
         + ParallelLines(
             axis,  # its rows turn across A's axis, as the other angles do: see above

@@ -332,7 +332,7 @@ def test_the_orientation_error_of_half_a_turn_is_half_a_turn():
 def test_angles_along_a_path_that_are_not_finite_are_refused():
     line = tasks.Line(X, Y)
     for angles in ({"work": np.nan}, {"travel": np.inf}):
-        with pytest.raises(InputError, match="angles of 'tip along path'"):
+        with pytest.raises(InputError, match="angle of 'tip along path'"):
             tasks.AxisAlongPath(TIP, line, **angles)
 
 

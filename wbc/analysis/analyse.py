@@ -13,13 +13,14 @@ import numpy as np
 
 from wbc.analysis.data import Analysis, Dependency, LevelAnalysis, Metric
 from wbc.arrays import Array, positive
-from wbc.errors import SolverError, UnknownName
+from wbc.checks import expect, known
+from wbc.errors import SolverError
 from wbc.linalg import RANK_TOLERANCE, factorise, norm
 from wbc.rows import allocate_rows
+from wbc.state import State
 
 if TYPE_CHECKING:
     from wbc.hierarchy import Hierarchy, Level
-    from wbc.state import State
     from wbc.task import Task
 
 __all__ = ["analyse"]
@@ -76,8 +77,8 @@ def analyse(
         InputError: a task does not fit the robot, or the tolerance is not positive.
         SolverError: a task wrote a row that is not finite.
     """
-    if metric not in get_args(Metric):
-        raise UnknownName("metric", metric, get_args(Metric))
+    expect(State, state=state)
+    known("metric", metric, get_args(Metric))
     positive(tolerance, "tolerance")
     robot = state.robot
     basis = np.eye(robot.nv)

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, frozen, per_row, positive
+from wbc.arrays import Array, frozen, number, per_row, positive
+from wbc.checks import expect, flag, whole
 from wbc.errors import InputError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.pose.descent import Descent
 from wbc.pose.goal import Goal
 from wbc.pose.result import PoseResult
+from wbc.robot import Robot
 from wbc.task import Task
-
-if TYPE_CHECKING:
-    from wbc.robot import Robot
 
 __all__ = ["solve_pose"]
 
@@ -78,17 +76,19 @@ def solve_pose(
             no pose found from 16 starts; the closest misses
               tip on point (level 1) by 1.15 m
     """
-    scale = _scale(weights, robot.nv)
+    expect(Robot, robot=robot)
+    expect(Task | Level | Hierarchy, goal=goal)
+    flag(quick=quick)
+    scale, t = _scale(weights, robot.nv), number(t, "t")
+    margin = positive(margin, "margin", zero=True)
     low, high = scale * (robot.q_min + margin), scale * (robot.q_max - margin)
-    positive(margin, "margin", zero=True)
     if (low >= high).any():
         raise InputError(f"margin {margin} leaves no range of a joint.")
     wish = scale * frozen(
         robot.q_home if start is None else start, (robot.nv,), "start"
     )
     positive(tolerance, "tolerance")
-    if attempts < 1:
-        raise InputError(f"attempts must be at least 1, got {attempts}.")
+    attempts, seed = whole(attempts, "attempts", 1), whole(seed, "seed")
     found = Goal(robot, Hierarchy.of(goal), t, scale)
     descent = Descent(found, low, high)
     best: tuple[float, ...] = (np.inf,)
