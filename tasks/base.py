@@ -9,16 +9,16 @@ import numpy as np
 from tasks.evaluator import SCRATCH, Code, evaluate, run
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
 from wbc.arrays import Array
-from wbc.binding import refuse_in_use
 from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
+from wbc.settled import Settled
 
 __all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
 
 
-class CatalogueTask(MotionTask):
+class CatalogueTask(Settled, MotionTask):
     """A motion task whose error, Jacobian and drift come from a compiled kernel.
 
     Within a stack all such tasks are evaluated by one call; `evaluate` runs the same
@@ -28,10 +28,6 @@ class CatalogueTask(MotionTask):
     code: Code
     moving: Array | None = None
     """A frame that moves by itself, in the place of the world among the frames."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        refuse_in_use(self, name)
-        super().__setattr__(name, value)
 
     @abstractmethod
     def parameters(self, robot: Robot) -> Array:

@@ -10,6 +10,7 @@ from wbc import Robot, Rows, State, Task
 from wbc.arrays import positive
 from wbc.checks import named, text
 from wbc.errors import InputError
+from wbc.settled import Settled
 
 __all__ = ["Clearance"]
 
@@ -18,7 +19,7 @@ CONTACT = 1e-9
 
 
 @final
-class Clearance(Task):
+class Clearance(Settled, Task):
     """|p_A - p_B| >= distance, one row [m/s^2]; for two arms in one model.
 
     With c = |p_A - p_B| - distance the row asks for cdd + 2 a cd + a^2 c >= 0: c decays

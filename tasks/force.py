@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from tasks.contact import Contact
 from tasks.forcelaw import ForceLaw
+from tasks.memory import Felt
 from tasks.touch import TouchTask
 from wbc import PD, FrameState, Robot, Rows, State
 from wbc.arrays import Array, frozen, numbers, per_row, positive, rotation
@@ -81,13 +82,12 @@ class HybridForceMotion(TouchTask):
         name = named(name, f"{frame} hybrid")
         S = _selection(selection, name)
         super().__init__(name, "m, N", frame, S.size, axes, sensor, sensor_frame)
-        self._S = S
         self.claims = tuple(
             f"{kind} of sensor '{sensor}'"
             for kind, rows in (("force", S[:3]), ("moment", S[3:]))
             if rows.any()
         )
-        self._f, self._m = np.flatnonzero(S), np.flatnonzero(S == 0.0)
+        self._S, self._f, self._m = S, np.flatnonzero(S), np.flatnonzero(S == 0.0)
         expect(ForceLaw | None, law=law)
         self.law = ForceLaw() if law is None else law
         self.motion_law = PD(stiffness, damping)
@@ -131,19 +131,18 @@ class HybridForceMotion(TouchTask):
     def reset(self) -> None:
         """Forget the integral term and the contact."""
         self._contact.reset()
-        self._held = np.zeros(self._f.size)
-        self._measured, self._felt = np.zeros(self._f.size), np.zeros(6)
-        self._p = self._target[0, :3].copy()
+        none, p = np.zeros(self._f.size), self._target[0, :3].copy()
+        self._now = Felt(np.zeros((0, 0)), np.zeros(6), none, none, none, p)
 
     @property
     def felt(self) -> Array:
         """Wrench (6,) on the surroundings about F's origin, at the last tick, world."""
-        return self._felt.copy()
+        return self._now.wrench.copy()
 
     @property
     def position(self) -> Array:
         """Where F's origin was at the last tick, (3,) [m]."""
-        return self._p.copy()
+        return self._now.p.copy()
 
     @property
     def touching(self) -> bool:
@@ -193,16 +192,17 @@ class HybridForceMotion(TouchTask):
         """Add J_f^T F_s to the torques, and move on contact and integral term."""
         if not self._f.size:
             return
+        now = self._now
         if self._contact.touching:
-            torque += self._J.T @ self._measured
-        self._held = self.law.integrate(self._held, self._held_rate, state.dt)
-        size = float(np.linalg.norm(self._measured))
+            torque += now.J.T @ now.measured
+        now.held = self.law.integrate(now.held, now.rate, state.dt)
+        size = float(np.linalg.norm(now.measured))
         if self._contact.feel(size, state.dt) and self.law.integral == 0.0:
-            self._held[:] = 0.0  # nothing would unlearn it
+            now.held[:] = 0.0  # nothing would unlearn it
 
     def _motion(self, F: FrameState, rows: Rows) -> None:
         p, v, a = self._target
-        error, self._p = np.zeros(6), F.p
+        error, self._now.p = np.zeros(6), F.p
         error[:3] = F.p - p[:3]
         if self.size == 6:
             error[3:] = pin.log3(F.R @ self._R_d.T)
@@ -213,25 +213,24 @@ class HybridForceMotion(TouchTask):
         rows.lower[m] = self._split(a)[m] + wish - rows.drift[m]
 
     def _press(self, state: State, F: FrameState, rows: Rows) -> None:
-        f = self._f
-        self._J = J = rows.A[f]
-        self._felt = self._wrench(state, F)
-        self._measured = self._split(self._felt)[f]
-        speed = self._split(F.V)[f]
-        desired = self._force[f]
+        f, now = self._f, self._now
+        now.J = J = rows.A[f]
+        now.wrench = self._wrench(state, F)
+        now.measured = measured = self._split(now.wrench)[f]
+        speed, desired = self._split(F.V)[f], self._force[f]
         mobility = J @ np.linalg.solve(state.M, J.T)
         rows.rate[f] = 0.0
-        rows.error[f] = self._measured - desired
+        rows.error[f] = measured - desired
         if self._contact.touching:
-            wish = self.law.command(desired, self._measured, self._held)
-            acceleration = mobility @ (wish - self._measured)
+            wish = self.law.command(desired, measured, now.held)
+            acceleration = mobility @ (wish - measured)
             acceleration -= self.force_damping * speed
-            self._held_rate = self.law.integral * (desired - self._measured)
+            now.rate = self.law.integral * (desired - measured)
         else:
             late = self._search_velocity(desired) - speed
-            acceleration = self.force_damping * late + mobility @ self._held
+            acceleration = self.force_damping * late + mobility @ now.held
             pull = self.force_damping**2 / 4.0 * late  # critically damped
-            self._held_rate = np.array(np.linalg.lstsq(mobility, pull, rcond=1e-9)[0])
+            now.rate = np.array(np.linalg.lstsq(mobility, pull, rcond=1e-9)[0])
         rows.lower[f] = acceleration - rows.drift[f]
 
     def _search_velocity(self, desired: Array) -> Array:

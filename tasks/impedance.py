@@ -7,6 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.memory import Pushed, Reference
 from tasks.touch import TouchTask
 from wbc import PD, Rows, State
 from wbc.arrays import Array, frozen, numbers, positive
@@ -121,20 +122,22 @@ class Impedance(_Compliant):
         name = named(name, f"{frame} impedance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.claims = (f"force of sensor '{sensor}'", f"moment of sensor '{sensor}'")
+        self._now = Pushed(np.zeros((6, 0)), np.zeros(6))
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
         F = self._kinematics(state, rows)
-        self._J, self._h = F.J, self._wrench(state, F)
+        now = self._now
+        now.J, now.wrench = F.J, self._wrench(state, F)
         rows.error[:] = self._R.T @ (F.p - self._target[0])
         rows.rate[:] -= self._R.T @ self._target[1]
-        wish = self._respond(rows.error, rows.rate, self._R.T @ self._h[:3])
+        wish = self._respond(rows.error, rows.rate, self._R.T @ now.wrench[:3])
         rows.lower[:] = rows.upper[:] = wish - rows.drift
 
     def advance(self, state: State, torque: Array) -> None:
         """Add J^T h to the torques."""
         del state
-        torque += self._J.T @ self._h
+        torque += self._now.J.T @ self._now.wrench
 
 
 @final
@@ -186,31 +189,32 @@ class Admittance(_Compliant):
 
     def reset(self) -> None:
         """Let the reference start from where the robot is at the next tick."""
-        self._reference: tuple[Array, Array] | None = None
+        self._reference: Reference | None = None
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
         F = self._kinematics(state, rows)
         if self._reference is None:
-            self._reference = F.p.copy(), F.V[:3].copy()
-        x, v = self._reference
+            self._reference = Reference(F.p.copy(), F.V[:3].copy(), np.zeros(3))
+        now = self._reference
+        x, v = now.x, now.v
         p_d, v_d, _ = self._target
         error, rate = self._R.T @ (x - p_d), self._R.T @ (v - v_d)
         h = self._R.T @ self._wrench(state, F)[:3]
-        self._acceleration = self._respond(error, rate, h)
+        now.acceleration = self._respond(error, rate, h)
         rows.error[:] = self._R.T @ (F.p - x)
         rows.rate[:] -= self._R.T @ v
         wish = self.following.acceleration(rows.error, rows.rate)
-        rows.lower[:] = rows.upper[:] = self._acceleration + wish - rows.drift
+        rows.lower[:] = rows.upper[:] = now.acceleration + wish - rows.drift
 
     def advance(self, state: State, torque: Array) -> None:
         """Move the reference on by one tick; not by what is not finite."""
         del torque
-        if self._reference is None or not np.isfinite(self._acceleration).all():
+        now = self._reference
+        if now is None or not np.isfinite(now.acceleration).all():
             return
-        x, v = self._reference
-        v = v + state.dt * (self._R @ self._acceleration)
-        self._reference = x + state.dt * v, v
+        now.v = now.v + state.dt * (self._R @ now.acceleration)
+        now.x = now.x + state.dt * now.v
 
 
 def _gain(value: ArrayLike, what: str, *, zero: bool = True) -> Array:

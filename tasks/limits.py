@@ -11,10 +11,11 @@ from tasks.base import run_kernel
 from tasks.evaluator import Code, run
 from wbc import Kernel, Robot, Rows, State, Task
 from wbc.arrays import Array, per_row, positive
-from wbc.binding import announce, refuse_in_use
+from wbc.binding import announce
 from wbc.checks import known
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
+from wbc.settled import Settled
 
 __all__ = ["JointLimits", "TorqueLimits", "TorqueRateLimits"]
 
@@ -22,7 +23,7 @@ Integrator: TypeAlias = Literal["semi-implicit", "exact"]
 
 
 @final
-class TorqueLimits(Task):
+class TorqueLimits(Settled, Task):
     """-tau_max <= tau <= tau_max, one row a joint [Nm or N].
 
     Args:
@@ -71,7 +72,7 @@ class TorqueLimits(Task):
 
 
 @final
-class TorqueRateLimits(Task):
+class TorqueRateLimits(Settled, Task):
     """|tau - tau_before| <= rate dt, one row a joint [Nm or N].
 
     The torque before is what the controller sent at the last tick, blends and
@@ -138,7 +139,7 @@ class TorqueRateLimits(Task):
 
 
 @final
-class JointLimits(Task):
+class JointLimits(Settled, Task):
     """Position, velocity and acceleration limits as bounds on vdot, one row a joint.
 
     The bounds are viable: whoever keeps them can always stop before the position
@@ -174,10 +175,6 @@ class JointLimits(Task):
         if self.braking > 1.0:
             raise InputError("braking is a share of the acceleration limit, at most 1.")
         self.integrator = known("integrator", integrator, get_args(Integrator))
-
-    def __setattr__(self, name: str, value: object) -> None:
-        refuse_in_use(self, name)
-        super().__setattr__(name, value)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """The joints' names."""

@@ -11,12 +11,13 @@ from wbc import Robot, Rows, SaturatedPD, State, Task
 from wbc.arrays import positive
 from wbc.checks import names
 from wbc.errors import InputError
+from wbc.settled import Settled
 
 __all__ = ["JointLocking"]
 
 
 @final
-class JointLocking(Task):
+class JointLocking(Settled, Task):
     """Joints in an activation zone at their limits are held in its middle, P4 eq. (18).
 
     Inside the zone a joint's row is an equality, an attraction to the middle of the

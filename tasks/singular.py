@@ -10,12 +10,13 @@ from wbc import PD, InputError, MotionTask, Robot, Rows, SaturatedPD, State, Tas
 from wbc.arrays import Array, positive
 from wbc.checks import expect
 from wbc.rows import allocate_rows
+from wbc.settled import Settled
 
 __all__ = ["SingularDamping"]
 
 
 @final
-class SingularDamping(Task):
+class SingularDamping(Settled, Task):
     """Rest for the joint directions in which another task becomes singular.
 
     With J = U diag(s) V^T of that task, e the state error that its law reacts to and kd

@@ -12,13 +12,14 @@ from wbc import FrameState, Robot, Rows, State, Task
 from wbc.arrays import Array, rotation
 from wbc.checks import text
 from wbc.errors import InputError, SolverError
+from wbc.settled import Settled
 
 __all__ = ["TouchTask"]
 
 AXES = ("x", "y", "z")
 
 
-class TouchTask(Task):
+class TouchTask(Settled, Task):
     """A task on a frame F that feels the wrench of the robot on its surroundings.
 
     Its rows are the twist of F in task axes D: J_D = blockdiag(R, R)^T J, so that each
@@ -133,7 +134,8 @@ class TouchTask(Task):
                 f"controller was told of: {known}. Pass wrenches={{'{self.sensor}': "
                 "...}, or name another one with sensor=..."
             )
-        self._heard = True
+        if not self._heard:
+            self._heard = True
         f0, f1, f2 = measured[:3].tolist()
         a0, a1, a2 = (state.position(self.sensor_frame) - F.p).tolist()
         wrench = measured.copy()

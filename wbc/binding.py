@@ -1,7 +1,7 @@
 """Tasks in use: which stacks read them, and what becomes of changes at run time.
 
 A stack reads gains and settings of compiled tasks once. So a change of a task in use
-must either reach the stacks that it stands in, or be refused.
+must either reach the stacks that it stands in, or be refused (`wbc.settled`).
 """
 
 from __future__ import annotations
@@ -10,13 +10,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 from weakref import WeakSet
 
-from wbc.errors import InputError
-
 if TYPE_CHECKING:
     from wbc.stack import Stack
     from wbc.task import Task
 
-__all__ = ["announce", "refuse_in_use", "register"]
+__all__ = ["announce", "register"]
 
 _STACKS: WeakSet[Stack] = WeakSet()
 
@@ -37,21 +35,6 @@ def announce(task: Task) -> None:
         task.check(stack.robot)
     for stack in stacks:
         stack.read_afresh()
-
-
-def refuse_in_use(task: Task, name: str) -> None:
-    """Refuse to set an attribute that stacks have read already.
-
-    Raises:
-        InputError: the task is in use, and the attribute is a public one that it has.
-    """
-    settled = not name.startswith("_") and name in vars(task)
-    if settled and next(_users(task), None) is not None:
-        raise InputError(
-            f"'{name}' of task '{task.name}' was read when its controller was built, "
-            "so setting it would have no effect: make a new task, and hand the new "
-            "hierarchy to Controller.change()."
-        )
 
 
 def _users(task: Task) -> Iterator[Stack]:

@@ -402,8 +402,7 @@ def test_a_new_fraction_takes_effect_or_is_refused():
         ),
     ],
 )
-def test_what_would_have_no_effect_is_refused_in_use_only(task, name, value):
-    setattr(task, name, getattr(task, name))
+def test_what_would_have_no_effect_is_refused(task, name, value):
     control = Controller(ARM, task)
     with pytest.raises(InputError, match=rf"'{name}' of task .* Controller.change"):
         setattr(task, name, value)
