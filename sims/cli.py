@@ -55,7 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     run.add_argument("cell", metavar="CELL", help="see 'wbc list'")
     run.add_argument("--resolver", default="hqp", help=RESOLVERS)
-    run.add_argument("--experiment", default="", help="such as initial (cutting)")
+    run.add_argument("--experiment", default="", help="such as initial (cutting only)")
     run.add_argument("--view", action="store_true", help="open a window")
     run.add_argument(
         "--video", metavar="FILE.mp4", help="film it; needs pip install 'wbc[video]'"
@@ -109,16 +109,18 @@ def _common(command: argparse.ArgumentParser) -> None:
         "--duration",
         type=seconds,
         metavar="S",
-        help="longest simulated time of each job of the cell [s]",
+        help="longest simulated time of each job of a cell [s]",
     )
     command.add_argument("--seed", type=seed, default=0, help="of everything random")
     command.add_argument(
         "--mismatch",
         action="store_true",
-        help="simulate a robot that differs from the controller's model",
+        help="simulate a robot that differs from the controller's model (cells only)",
     )
     command.add_argument(
-        "--combined", action="store_true", help="two arms under one hierarchy (cutting)"
+        "--combined",
+        action="store_true",
+        help="both arms under one hierarchy (cutting only)",
     )
     command.add_argument("--out", metavar="DIR", help="write metrics, log and report")
     command.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -23,6 +23,7 @@ from sims.report.page import write_report
 from sims.report.runs import CAPTION, level_figures
 from sims.report.snapshot import Image, NoDisplay, write_png
 from sims.resolvers import make_resolver
+from sims.usage import refuse_idle
 from sims.view import check_video
 from wbc import InputError, UnknownName
 
@@ -44,6 +45,7 @@ def run_cell(name: str, options: Options, out: str | None) -> int:
     """Run a cell, print its metrics, and write them where asked."""
     demo = find_demo(name)
     make_resolver(options.resolver)
+    refuse_idle(options, name)
     if options.experiment and options.experiment not in demo.experiments:
         raise UnknownName("experiment", options.experiment, demo.experiments)
     folder = None if out is None else _folder(out)
@@ -69,11 +71,13 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
 
     Raises:
         UnknownName: there is no such cell or resolver.
+        InputError: an option means nothing here.
     """
     if name not in (*STUDIES, *cell_names()):
         raise UnknownName("cell or study", name, [*cell_names(), *STUDIES])
     for resolver in resolvers:
         make_resolver(resolver)
+    refuse_idle(options, name)
     folder = None if out is None else _folder(out)
     if name in STUDIES:
         return STUDIES[name](resolvers, options, folder)

@@ -77,6 +77,7 @@ class Demo:
         experiments: their names, the default first; empty where there are none.
         compared: resolver -> outcome of each, into (caption, svg) pairs of the cell's
             own that set them side by side; None for none.
+        combined: whether `Options.combined` means something to it.
     """
 
     name: str
@@ -84,3 +85,4 @@ class Demo:
     run: Callable[[Options], Outcome]
     experiments: tuple[str, ...] = ()
     compared: Callable[[Mapping[str, Outcome]], list[tuple[str, str]]] | None = None
+    combined: bool = False

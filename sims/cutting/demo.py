@@ -119,4 +119,5 @@ DEMO = Demo(
     _run,
     EXPERIMENTS,
     compared=compared,
+    combined=True,
 )
