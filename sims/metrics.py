@@ -51,9 +51,14 @@ class Metric:
             raise InputError(f"the bound of metric '{self.name}' is NaN.")
 
     @property
+    def measured(self) -> bool:
+        """Whether there is a value, which too short a run may not have."""
+        return not math.isnan(self.value)
+
+    @property
     def holds(self) -> bool:
         """Whether the bound is kept; without a bound yes, a NaN value never."""
-        if math.isnan(self.value):
+        if not self.measured:
             return False
         return self.bound is None or _TESTS[self.sense](self.value, self.bound)
 
@@ -64,14 +69,18 @@ class Metric:
 
     @property
     def mark(self) -> str:
-        """Either "ok" or "FAIL"; empty if there was nothing to fail."""
+        """Either "ok", "FAIL" or "not measured"; empty if nothing could fail."""
+        if not self.measured:
+            return "not measured"
         if not self.holds:
             return "FAIL"
         return "" if self.bound is None else "ok"
 
 
 def format_value(value: float) -> str:
-    """Four significant digits; whole numbers below a thousand million in full."""
+    """Four significant digits, whole numbers below a thousand million in full."""
+    if math.isnan(value):
+        return "-"
     if math.isfinite(value) and value == round(value) and abs(value) < 1e9:
         return f"{value:.0f}"
     return f"{value:.4g}"
@@ -79,17 +88,21 @@ def format_value(value: float) -> str:
 
 def verdict(metrics: Sequence[Metric]) -> str:
     """One line that says how the run ended, such as "2 of 9 bounds fail"."""
-    failed = sum(not metric.holds for metric in metrics)
+    missing = sum(not metric.measured for metric in metrics)
+    failed = sum(not metric.holds for metric in metrics) - missing
     judged = sum(metric.bound is not None or not metric.holds for metric in metrics)
     if not judged:
         return "no bounds to hold"
     if failed:
-        return f"{failed} of {judged} bounds fail"
+        rest = f", {missing} not measured" if missing else ""
+        return f"{failed} of {judged} bounds fail{rest}"
+    if missing:
+        return f"{missing} of {judged} bounds not measured, the others hold"
     return f"all {judged} bounds hold" if judged > 1 else "the one bound holds"
 
 
 def table(metrics: Iterable[Metric]) -> str:
-    """Aligned plain text, one line a metric: name, value, bound, ok or FAIL."""
+    """Aligned plain text, one line a metric: name, value, bound, mark."""
     rows = [(m.name, format_value(m.value), m.limit, m.mark) for m in _unique(metrics)]
     name, value, limit = (max((len(r[i]) for r in rows), default=0) for i in range(3))
     lines = (f"{a:<{name}}  {b:>{value}}  {c:<{limit}}  {d}" for a, b, c, d in rows)

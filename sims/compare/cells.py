@@ -85,6 +85,8 @@ def _judged(outcomes: Mapping[str, Outcome]) -> list[Metric]:
 def _mark(metric: Metric | None) -> str:
     if metric is None:
         return "-"
+    if not metric.measured:
+        return metric.mark
     return format_value(metric.value) + ("" if metric.holds else " FAIL")
 
 

@@ -33,7 +33,12 @@ _PAGE = """<!DOCTYPE html>
 </body>
 </html>
 """
-_MARKS = {"ok": ("good", "✓ ok"), "FAIL": ("bad", "✗ FAIL"), "": ("", "")}
+_MARKS = {
+    "ok": ("good", "✓ ok"),
+    "FAIL": ("bad", "✗ FAIL"),
+    "not measured": ("bad", "not measured"),
+    "": ("", ""),
+}
 
 
 def write_report(

@@ -67,7 +67,12 @@ def test_run_writes_metrics_log_and_a_self_contained_report(tmp_path, capsys):
         assert np.isfinite(log["seam/torque"]).all()
     page = (written / "report.html").read_text()
     assert "seam_lateral_error_max_m" in page
-    assert "bounds fail" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    (line,) = (x for x in printed.splitlines() if "seam_speed_rms_error_m_s" in x)
+    assert line.split()[1] == "-"
+    assert line.endswith("not measured")
+    assert "nan" not in printed
+    assert "not measured" in page
 
 
 def test_the_same_seed_gives_the_same_run():

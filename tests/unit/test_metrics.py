@@ -37,7 +37,7 @@ def test_without_a_bound_a_metric_holds():
 def test_nan_never_holds(bound, sense):
     metric = Metric("error_m", math.nan, bound, sense)
     assert not metric.holds
-    assert metric.mark == "FAIL"
+    assert metric.mark == "not measured"
 
 
 def test_a_nan_bound_an_empty_name_and_an_unknown_sense_are_refused():
@@ -51,21 +51,23 @@ def test_a_nan_bound_an_empty_name_and_an_unknown_sense_are_refused():
 
 def test_values_show_four_digits_and_counts_in_full():
     shown = [format_value(x) for x in (1.23456e-5, 123456.0, 0.1 + 0.2, math.nan, -0.5)]
-    assert shown == ["1.235e-05", "123456", "0.3", "nan", "-0.5"]
+    assert shown == ["1.235e-05", "123456", "0.3", "-", "-0.5"]
 
 
-def test_the_table_is_aligned_and_says_ok_fail_or_nothing():
+def test_the_table_is_aligned_and_says_how_each_metric_ended():
     lines = table(
         [
             Metric("ticks", 5000.0),
             Metric("tilt_error_max_rad", 0.0123456, 0.01),
             Metric("realtime_factor", 3.5, 1.0, ">="),
+            Metric("seam_error_m", math.nan, 1.0),
         ]
     ).splitlines()
     assert lines == [
         "ticks                  5000",
         "tilt_error_max_rad  0.01235  <= 0.01  FAIL",
         "realtime_factor         3.5  >= 1     ok",
+        "seam_error_m              -  <= 1     not measured",
     ]
 
 
@@ -95,4 +97,7 @@ def test_the_verdict_counts_bounds_and_unmeasured_values():
     assert verdict([Metric("n", 1.0)]) == "no bounds to hold"
     assert verdict([good, Metric("n", 1.0)]) == "the one bound holds"
     assert verdict([good, good]) == "all 2 bounds hold"
-    assert verdict([good, bad, Metric("n", math.nan)]) == "2 of 3 bounds fail"
+    nothing = Metric("n", math.nan, 1.0)
+    assert verdict([good, bad]) == "1 of 2 bounds fail"
+    assert verdict([good, bad, nothing]) == "1 of 3 bounds fail, 1 not measured"
+    assert verdict([good, nothing]) == "1 of 2 bounds not measured, the others hold"
