@@ -51,7 +51,11 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add(commands, "list", "names the cells", lambda _: list_cells())
     run = _add(
-        commands, "run", "runs a cell", lambda a: run_cell(a.cell, _options(a), a.out)
+        commands,
+        "run",
+        "runs a cell",
+        lambda a: run_cell(a.cell, _options(a), a.out),
+        "Exit code: 0 if all bounds hold, 1 if one does not or was not measured.",
     )
     run.add_argument("cell", metavar="CELL", help="see 'wbc list'")
     run.add_argument("--resolver", default="hqp", help=RESOLVERS)
@@ -66,6 +70,9 @@ def _parser() -> argparse.ArgumentParser:
         "compare",
         "runs a cell, or a study, under several resolvers, or a cell's experiments",
         lambda a: compare(a.cell, a.resolvers, _options(a), a.out),
+        "Exit code: for a cell 0 once all runs are done, whatever their metrics say, "
+        "since the weaker resolvers are there to fail; for random and transitions 1 "
+        "if a bound does not hold.",
     )
     against.add_argument(
         "cell",
@@ -98,8 +105,8 @@ def _parser() -> argparse.ArgumentParser:
 RESOLVERS = "hqp, hqp:BACKEND, nullspace, nullspace:tsid, nullspace:uf or weighted"
 
 
-def _add(commands, name, about, action):  # type: ignore[no-untyped-def] # private class
-    command = commands.add_parser(name, help=about, description=about)
+def _add(commands, name, about, action, end=None):  # type: ignore[no-untyped-def] # private class
+    command = commands.add_parser(name, help=about, description=about, epilog=end)
     command.set_defaults(action=action)
     return command
 

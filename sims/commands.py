@@ -69,6 +69,10 @@ def compare(name: str, resolvers: list[str], options: Options, out: str | None) 
         options: for the runs.
         out: folder for reports.
 
+    Returns:
+        exit code: 0 for a cell, whose runs are not judged; 1 for a study of which a
+            bound does not hold.
+
     Raises:
         UnknownName: there is no such cell or resolver.
         InputError: an option means nothing here.

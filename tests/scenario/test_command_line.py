@@ -143,6 +143,18 @@ def test_a_malformed_command_line_exits_2(arguments, capsys):
     assert "usage" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("command", "word"),
+    [("run", "1 if one does not"), ("compare", "0 once all runs are done")],
+)
+def test_help_says_what_the_exit_code_means(command, word, capsys):
+    with pytest.raises(SystemExit):
+        main([command, "--help"])
+    printed = " ".join(capsys.readouterr().out.split())
+    assert f"Exit code: {'' if command == 'run' else 'for a cell '}0" in printed
+    assert word in printed
+
+
 def test_view_without_a_display_says_so_and_goes_on(monkeypatch, capsys):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
