@@ -156,24 +156,25 @@ class Controller:
     ) -> Solution:
         self._last = q
         self._state.refresh(q, v, t, wrenches)
-        share = 1.0
         try:
             if self._transition is None:
                 torque, answer = self._bound.tick(self._state)
             else:
-                torque, answer, share = self._pass_on(self._transition)
+                torque, answer = self._pass_on(self._transition)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
         self._state.commanded = torque
-        return Solution(self._stack, torque, answer, answer.status, "", share)
+        return Solution(
+            self._stack, torque, answer, answer.status, "", self._transition
+        )
 
-    def _pass_on(self, transition: Transition) -> tuple[Array, Answer, float]:
-        """A tick of a change: torques, their source, share of the newest hierarchy."""
+    def _pass_on(self, transition: Transition) -> tuple[Array, Answer]:
+        """A tick of a change: torques, and what they come from."""
         torque, answer = transition.tick(self._state)
         self._adopt(transition.newest)
         if transition.finished:
             self._transition = None
-        return torque, answer, transition.share
+        return torque, answer
 
     @staticmethod
     def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:

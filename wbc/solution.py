@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import final
+from typing import TYPE_CHECKING, final
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.resolver import Answer, Status
 from wbc.stack import Stack, Term
 from wbc.task import MotionTask
+
+if TYPE_CHECKING:
+    from wbc.transition import Transition
 
 __all__ = ["Solution", "TaskReport"]
 
@@ -57,13 +60,11 @@ class Solution:
             after a fallback.
         status: how the tick ended.
         message: what went wrong, empty if nothing did.
-        share: of the hierarchy that reports are about; below 1 while a change to it
-            is under way (`Controller.change`), so that its levels are not optimal yet.
     """
 
     __slots__ = (
-        "_kinetic", "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message",
-        "share", "status", "torque",
+        "_kinetic", "_ramp", "_ranks", "_slacks", "_stack", "_tick", "acceleration",
+        "message", "status", "torque",
     )  # fmt: skip
 
     def __init__(
@@ -73,11 +74,11 @@ class Solution:
         answer: Answer | None,
         status: Status,
         message: str = "",
-        share: float = 1.0,
+        transition: Transition | None = None,
     ) -> None:
         self._stack, self._tick = stack, stack.tick
         self.torque, self.status, self.message = torque, status, message
-        self.share = share
+        self._ramp = None if transition is None else (transition, transition.share)
         self._ranks: Array | IntArray | None = None
         self._slacks: Array | None = None
         self._kinetic = True
@@ -92,6 +93,15 @@ class Solution:
     def ok(self) -> bool:
         """Whether the resolver answered."""
         return self.status in (Status.SOLVED, Status.INCOMPLETE)
+
+    @property
+    def share(self) -> float:
+        """Of the hierarchy that reports are about, in the torque.
+
+        Below 1 while a change to it is under way (`Controller.change`), so that its
+        levels are not optimal yet.
+        """
+        return 1.0 if self._ramp is None else self._ramp[1]
 
     @property
     def ranks(self) -> tuple[int, ...]:
@@ -175,12 +185,14 @@ class Solution:
     def explain(self) -> Explanation:
         """Which tasks are met, what blocks the others, and at what price; print it.
 
-        Made for reading, not for every tick: it takes milliseconds.
+        Made for reading, not for every tick: it takes milliseconds. While a change of
+        hierarchy is under way it says so, and which tasks come and go.
 
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
-        return explain(self._fresh(), self.acceleration, self._certify(True))
+        stack, ramp = self._fresh(), self._ramp and self._ramp[0]
+        return explain(stack, self.acceleration, self._certify(True), ramp)
 
     def cost_of_strictness(self) -> StrictnessCost:
         """What each level misses alone, what it misses here, who took the difference.

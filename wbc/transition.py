@@ -118,6 +118,15 @@ class Transition:
         """Whether the newest is alone, and none waits."""
         return len(self._live) == 1 and self._waiting is None
 
+    @property
+    def parts(self) -> list[tuple[Hierarchy, float]]:
+        """Hierarchies in the last torque and their shares of it, the oldest first."""
+        rest, found = 1.0, []
+        for ramp in self._live[:0:-1]:
+            found.append((ramp.bound.hierarchy, rest * ramp.share))
+            rest *= 1.0 - ramp.share
+        return [(self._live[0].bound.hierarchy, rest), *found[::-1]]
+
     def to(self, bound: Bound, ticks: int, most: float) -> None:
         """Begin with one more, at the next tick; the last one to wait is the one.
 

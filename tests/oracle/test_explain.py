@@ -193,7 +193,8 @@ def test_the_stacks_have_blockers_of_every_kind():
     blockers = [blocker for task in told for blocker in task.blockers]
     assert {b.side for b in blockers} == set(get_args(Side))
     assert {r for task in told for r in task.reasons} == set(get_args(Reason)) - {
-        "resolver"
+        "ramp",
+        "resolver",
     }
     assert any(b.held_for for b in blockers)
     assert any(b.price < 0.0 for b in blockers)

@@ -69,7 +69,14 @@ DERIVED_OR_RETURNED: Final = {
     "wbc": {
         *("Analysis", "LevelAnalysis", "Dependency", "Certificate", "Explanation"),
         *("ActiveBound", "Blocker", "LevelCost", "StrictnessCost", "TaskExplanation"),
-        *("HierarchyResult", "PoseResult", "TaskMiss", "Solution", "TaskReport"),
+        *(
+            "HierarchyResult",
+            "PoseResult",
+            "TaskMiss",
+            "Solution",
+            "TaskReport",
+            "Fading",
+        ),
         *("Status", "State", "FrameState", "Rows", "Robot"),  # by functions of ours
         *("Law", "Resolver", "Task", "MotionTask"),  # `Pull` is one
         "Kernel",  # of a compiled task, read once by its stack

@@ -323,6 +323,56 @@ def test_a_rate_can_change_on_the_way():
     assert float(limit.rate) == 20.0
 
 
+# ------------------------------------------------------------------ what is explained
+
+
+@families
+def test_an_explanation_in_a_ramp_says_so_and_which_tasks_come_and_go(resolver):
+    limits, stays = TorqueLimits(), Posture(HOME, name="stays")
+    goes, comes = FramePosition("tip", [0.3, 0, 1]), FramePosition("tip", [0.5, 0.1, 1])
+    goes.set_target([0.4, 0.0, 0.9])
+    old, new = limits >> goes >> stays, limits >> comes + held(AWAY, "comes") >> stays
+    control = Controller(ARM, old, resolver)
+    assert control(HOME, STILL).explain().change is None
+    control.change(new, OVER, rate=FAST)
+    for _ in range(TICKS // 2):
+        solution = control(HOME, STILL)
+    told = solution.explain()
+    assert 0.1 < told.change.share == solution.share < 0.9
+    assert [name for name, _ in told.change.coming] == ["tip position", "comes"]
+    (gone,) = told.change.going
+    assert gone[0] == "tip position"
+    assert gone[1] == pytest.approx(1.0 - solution.share)
+    assert "ramp" in told.task("comes").reasons
+    assert all("resolver" not in task.reasons for task in told.tasks)
+    text = str(told)
+    share = f"{solution.share:.1%}"
+    assert text.startswith(
+        f"a ramp is under way: the new hierarchy has a share of {share}"
+    )
+    assert "'comes' fades in, at" in text
+    assert "resolver" not in text
+    while control.changing:
+        solution = control(HOME, STILL)
+    assert solution.explain().change is None
+    assert "ramp" not in str(solution.explain())
+
+
+def test_shares_of_changes_in_a_row_add_up():
+    control = Controller(ARM, held(HOME, "a"))
+    control.change(held(AWAY, "b"), OVER, rate=FAST)
+    for _ in range(TICKS // 2):
+        control(HOME, STILL)
+    control.change(held(-AWAY, "c"), OVER, rate=FAST)
+    for _ in range(TICKS // 4):
+        solution = control(HOME, STILL)
+    change = solution.explain().change
+    shares = dict([*change.coming, *change.going])
+    assert set(shares) == {"a", "b", "c"}
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert shares["c"] == solution.share
+
+
 # -------------------------------------------------------------- changes of tasks in use
 
 

@@ -7,6 +7,7 @@ from typing import Literal, TypeAlias, final
 
 from wbc.arrays import Array
 from wbc.errors import UnknownName
+from wbc.explain.fading import Fading
 from wbc.explain.text import paid, table
 
 __all__ = [
@@ -19,7 +20,7 @@ __all__ = [
 ]
 
 Side: TypeAlias = Literal["upper", "lower", "equality", "cannot be met itself"]
-Reason: TypeAlias = Literal["bounds", "tasks", "conflict", "lost", "resolver"]
+Reason: TypeAlias = Literal["bounds", "tasks", "conflict", "lost", "ramp", "resolver"]
 
 WORDS: dict[Reason, str] = {
     "bounds": "active bounds above leave no more",
@@ -29,6 +30,7 @@ WORDS: dict[Reason, str] = {
         "the robot itself cannot move that way here: it is singular, or the task's "
         "own rows contradict each other"
     ),
+    "ramp": "the hierarchy is not in full force before the end of its ramp",
     "resolver": "this resolver's answer is not optimal here",
 }
 
@@ -114,7 +116,8 @@ class TaskExplanation:
             have none; `error_unit` is its unit.
         lost: the part of |missing| that the task would miss even alone.
         reasons: why it is not met: "bounds" or "tasks" above, "conflict" within its
-            level, a direction "lost" to the robot, a "resolver" that is not optimal.
+            level, a direction "lost" to the robot, a "ramp" that is under way, a
+            "resolver" that is not optimal.
         blockers: rows of its level and above that hold it back, strongest first (per
             unit of the row in the kinetic metric, so that Nm and rad/s^2 compare).
         unique: False where active bounds above depend on one another, so that other
@@ -144,7 +147,8 @@ class TaskExplanation:
         words = [WORDS[reason] for reason in self.reasons]
         if "resolver" in self.reasons:
             words[-1] += f" (residual of its proof {self.proof:.1e})"
-            words += ["take the prices as a hint"] if self.blockers else []
+        if {"ramp", "resolver"} & {*self.reasons} and self.blockers:
+            words.append("take the prices as a hint")
         if self.blockers and not self.unique:
             words.append("the bounds depend on one another: other prices are possible")
         return "; ".join(words)
@@ -159,11 +163,13 @@ class Explanation:
         tasks: from the top level down.
         bounds: all bounds in force, from the top level down.
         levels: number of levels.
+        change: the change of hierarchy that is under way, None for none.
     """
 
     tasks: tuple[TaskExplanation, ...]
     bounds: tuple[ActiveBound, ...]
     levels: int
+    change: Fading | None = None
 
     def task(self, name: str) -> TaskExplanation:
         """How one task fared.
@@ -185,7 +191,8 @@ class Explanation:
         return self.task(name).blockers
 
     def __repr__(self) -> str:
-        lines = list(table(self.tasks))
+        lines = [] if self.change is None else [str(self.change), ""]
+        lines += table(self.tasks)
         missed = [task for task in self.tasks if not task.met]
         lines += ["", "why" if missed else "every task is met"]
         lines += [f"  {task.name}: {task.why}" for task in missed]

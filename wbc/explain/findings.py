@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,10 +17,14 @@ from wbc.explain.data import (
     Side,
     TaskExplanation,
 )
+from wbc.explain.fading import Fading, fading
 from wbc.explain.response import NEGLIGIBLE, Response, Tick, responses
 from wbc.linalg import factorise, norm
 from wbc.stack import Stack, Term
 from wbc.task import MotionTask
+
+if TYPE_CHECKING:
+    from wbc.transition import Transition
 
 __all__ = ["OPTIMAL", "explain"]
 
@@ -27,22 +32,30 @@ OPTIMAL = 1e-6
 """A level whose proof leaves more than this is not optimal."""
 
 
-def explain(stack: Stack, vdot: Array, certificate: Certificate) -> Explanation:
-    """Explain what joint accelerations vdot (n,) make of the stack's present rows."""
+def explain(
+    stack: Stack, vdot: Array, certificate: Certificate, ramp: Transition | None = None
+) -> Explanation:
+    """Explain what joint accelerations vdot (n,) make of the stack's present rows.
+
+    They come from a blend of hierarchies while there is a ramp from one to another.
+    """
+    change = None if ramp is None else fading(ramp.parts)
     tick = Tick(stack, vdot)
     levels = list(responses(tick))
     proofs = [proof.residual for proof in certificate.levels]
     tasks = tuple(
-        _task(tick, term, levels[term.level], proofs[term.level])
+        _task(tick, term, levels[term.level], proofs[term.level], change)
         for term in stack.terms
     )
     if proofs[-1] > OPTIMAL:  # another notion of least than ours: it pays no price
         levels[-1].slope[:] = 0.0
     bounds = tuple(_bounds(tick, levels))
-    return Explanation(tasks, bounds, len(stack.levels))
+    return Explanation(tasks, bounds, len(stack.levels), change)
 
 
-def _task(tick: Tick, term: Term, level: Response, proof: float) -> TaskExplanation:
+def _task(
+    tick: Tick, term: Term, level: Response, proof: float, change: Fading | None
+) -> TaskExplanation:
     where, raw = term.where, term.rows
     value = raw.A @ (tick.torque if term.task.space == "torque" else tick.vdot)
     wanted = np.clip(value, raw.lower, raw.upper)
@@ -63,7 +76,7 @@ def _task(tick: Tick, term: Term, level: Response, proof: float) -> TaskExplanat
         error=_error(term),
         error_unit=term.task.unit,
         lost=lost,
-        reasons=() if met else _reasons(term, blockers, lost, proof),
+        reasons=() if met else _reasons(term, blockers, lost, proof, change),
         blockers=blockers,
         unique=level.unique,
         proof=proof,
@@ -121,7 +134,11 @@ def _side(tick: Tick, j: int) -> Side:
 
 
 def _reasons(
-    term: Term, blockers: tuple[Blocker, ...], lost: float, proof: float
+    term: Term,
+    blockers: tuple[Blocker, ...],
+    lost: float,
+    proof: float,
+    change: Fading | None,
 ) -> tuple[Reason, ...]:
     causes = {_cause(blocker, term.level + 1) for blocker in blockers}
     order: tuple[Reason, ...] = ("bounds", "tasks", "conflict")
@@ -129,7 +146,7 @@ def _reasons(
     if lost > 0.0 or not (found or proof > OPTIMAL):
         found.append("lost")
     if proof > OPTIMAL:
-        found.append("resolver")
+        found.append("resolver" if change is None else "ramp")
     return tuple(found)
 
 
