@@ -8,17 +8,13 @@ of the sources has a cache folder of its own.
 
 from __future__ import annotations
 
-import getpass
-import hashlib
-import os
 import sys
-import tempfile
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, Final, TypeVar, cast
 
 import numba
 
+from wbc.cache import CACHE, forgive
 from wbc.linking import KERNEL, PART, WHOLE
 
 __all__ = ["announce", "compiled", "inner", "python"]
@@ -31,36 +27,6 @@ ALLOWED: Final = {"reassoc", "contract", "arcp", "nsz"}
 """Sums may be reordered for the vector units; NaN and infinity keep their meaning."""
 
 
-def _digest() -> str:
-    """Of exactly these kernels."""
-    digest = hashlib.sha256()
-    here = Path(__file__).parent
-    for folder in (here, here.with_name("tasks")):
-        for source in sorted(folder.rglob("*.py")):
-            text = source.read_bytes()
-            if b"wbc.compiled" in text or b"NamedTuple" in text or b"numba" in text:
-                digest.update(text)
-    return digest.hexdigest()[:16]
-
-
-def _cache_folder() -> Path | None:
-    """Where compiled code belongs; None where nothing can be written."""
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    spare = Path(tempfile.gettempdir()) / f"wbc-{getpass.getuser()}"
-    for root in (Path(home) / "wbc", spare):
-        folder = root / f"kernels-{_digest()}"
-        try:
-            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-            with tempfile.TemporaryFile(dir=folder):
-                return folder
-        except OSError:
-            continue
-    return None
-
-
-CACHE: Final = _cache_folder()
-
-
 def compiled(function: Function) -> Function:
     """Compile a function at its first call, for the argument types of that call.
 
@@ -70,6 +36,8 @@ def compiled(function: Function) -> Function:
     as optimised on its own: a result does not depend on the door it came in by.
     """
     kernel: Any = _compile(function, WHOLE | {"cache": CACHE is not None})
+    if CACHE is not None:
+        forgive(kernel)
     within: Any = _compile(function, KERNEL)
     kernel.get_call_template = within.get_call_template
     kernel.get_overload = within.get_overload
