@@ -5,6 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
+from wbc.checks import expect
 from wbc.errors import ModelError
 
 __all__ = ["add_section", "mount", "parse"]
@@ -34,8 +35,10 @@ def mount(arm_xml: str, tool_xml: str, at: str = "flange") -> str:
     Raises:
         ModelError: there is no such site, a name exists twice, or the tool says
             something about the whole model that the arm does not say.
+        InputError: an argument is no text.
     """
-    arm, tool = parse(arm_xml, "arm"), parse(tool_xml, "tool")
+    expect(str, arm_xml=arm_xml, tool_xml=tool_xml, at=at)
+    arm, tool = parse(arm_xml, "arm_xml"), parse(tool_xml, "tool_xml")
     body = _tool_body(tool)
     parent, site = _site(arm, at)
     _check_names(arm, tool)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from robots.assembly import add_section, parse
 from wbc import ModelError, Robot
 from wbc.arrays import Array, frozen, rotation
-from wbc.checks import text
+from wbc.checks import expect, text
 
 __all__ = ["Placed", "load", "mjcf"]
 
@@ -77,11 +77,15 @@ def mjcf(arms: Mapping[str, Placed]) -> str:
         arms: name -> arm, in the order of the joints.
 
     Raises:
+        InputError: not a mapping from names to arms.
         ModelError: no arm, one called "arms", arms that disagree about compiler or
             options, or one that cannot be read.
     """
+    expect(Mapping, arms=arms)
+    for name, placed in arms.items():
+        expect(Placed, **{f"arm '{text(name, 'name of an arm')}'": placed})
     if not arms:
-        raise ModelError("there is no arm to compose: give at least one.")
+        raise ModelError("there is no arm in arms: give at least one.")
     if ROOT in arms:
         raise ModelError(f"'{ROOT}' is the body of all arms: call that arm otherwise.")
     robots = [_single(name, placed) for name, placed in arms.items()]
@@ -110,9 +114,10 @@ def load(arms: Mapping[str, Placed], *, name: str | None = None) -> Robot:
         name: of the robot; the arms' names by default.
 
     Raises:
-        ModelError: as for ``mjcf``.
+        InputError, ModelError: as for ``mjcf``.
     """
-    return Robot.from_mjcf(mjcf(arms), name=name or "_".join(arms))
+    text_of = mjcf(arms)
+    return Robot.from_mjcf(text_of, name="_".join(arms) if name is None else name)
 
 
 def _single(name: str, placed: Placed) -> Robot:

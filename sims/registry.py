@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 
 from sims.demo import Demo
-from wbc import UnknownName
+from wbc.checks import known
 
 __all__ = ["cell_names", "find_demo"]
 
@@ -29,7 +29,5 @@ def find_demo(name: str) -> Demo:
     Raises:
         UnknownName: there is no such cell.
     """
-    if name not in MODULES:
-        raise UnknownName("cell", name, MODULES)
-    demo: Demo = import_module(MODULES[name]).DEMO
+    demo: Demo = import_module(MODULES[known("cell", name, MODULES)]).DEMO
     return demo

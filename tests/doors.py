@@ -15,10 +15,11 @@ import numpy as np
 import sims
 import tasks
 import wbc
-from robots import compose, lwr4, racer, tools
+from robots import assembly, compose, lwr4, racer, tools
 from sims import constraints, contact, grasping, welding
 from sims.cell import ArmCell
 from sims.mismatch import Mismatch
+from sims.registry import find_demo
 from sims.resolvers import make_resolver
 from sims.sensors import Encoders
 from sims.welding.workpiece import scene
@@ -28,7 +29,7 @@ __all__ = ["ARM", "DOORS", "HERE", "STATE", "TIP", "UP", "UPRIGHT", "Door", "pos
 
 ARM = racer.load()
 TIP = "torch_tip"
-STATE = ARM.state(ARM.q_home)
+STATE = ARM.state(ARM.q_home, wrenches={"wrist": np.zeros(6)})
 MJCF = racer.mjcf()
 UP, HERE, UPRIGHT = [0.0, 0.0, 1.0], [0.9, 0.1, 0.8], np.eye(3)
 URDF = """<robot name="one"><link name="base"/><link name="tip"><inertial>
@@ -85,6 +86,18 @@ def level() -> wbc.Level:
 
 def hierarchy() -> wbc.Hierarchy:
     return wbc.Hierarchy(position())
+
+
+def posture() -> wbc.Hierarchy:
+    return wbc.Hierarchy(tasks.Posture(name="a"))
+
+
+def solution() -> wbc.Solution:
+    return wbc.resolve(STATE, posture())
+
+
+def price() -> wbc.StrictnessCost:
+    return solution().cost_of_strictness()
 
 
 def controller() -> wbc.Controller:
@@ -152,6 +165,17 @@ DOORS = [
     Door(wbc.Robot.frame_id, {"name": TIP}, lambda: ARM),
     Door(Pull, {"name": "pull", "unit": "m", "rows": ("x",), "law": wbc.PD(1.0)}),
     Door(set_law, {"law": wbc.PD(1.0)}),
+    # what may be asked of results
+    Door(wbc.State.frame, {"name": TIP}, lambda: STATE),
+    Door(wbc.State.position, {"name": TIP}, lambda: STATE),
+    Door(wbc.State.jacobian, {"name": TIP}, lambda: STATE),
+    Door(wbc.State.wrench, {"sensor": "wrist"}, lambda: STATE),
+    Door(wbc.Solution.report, {"task": "a"}, solution),
+    Door(wbc.Explanation.task, {"name": "a"}, lambda: solution().explain()),
+    Door(wbc.Explanation.blocked, {"name": "a"}, lambda: solution().explain()),
+    Door(wbc.StrictnessCost.level, {"name": "a"}, price),
+    Door(wbc.Analysis.level, {"task": "a"}, lambda: posture().analyse(STATE)),
+    Door(wbc.Certificate.holds, {}, lambda: solution().certificate()),
     # sims and robots
     Door(
         sims.run,
@@ -169,6 +193,14 @@ DOORS = [
     Door(grasping.cell, {"robot": lwr4.load("gripper"), "cylinder": None}),
     Door(racer.load),
     Door(lwr4.load),
+    Door(racer.mjcf),
+    Door(lwr4.mjcf),
     Door(tools.mjcf, {"name": "torch"}),
+    Door(
+        assembly.mount, {"arm_xml": racer.mjcf(None), "tool_xml": tools.mjcf("torch")}
+    ),
+    Door(compose.mjcf, {"arms": {"arm": compose.Placed(MJCF)}}),
+    Door(compose.load, {"arms": {"arm": compose.Placed(MJCF)}}),
+    Door(find_demo, {"name": "welding"}),
     Door(compose.Placed, {"mjcf": MJCF}),
 ]

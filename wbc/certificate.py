@@ -20,7 +20,7 @@ from typing import final
 import numpy as np
 from scipy.optimize import nnls
 
-from wbc.arrays import Array
+from wbc.arrays import Array, positive
 from wbc.cascade import LevelRows
 
 __all__ = ["Certificate", "LevelProof", "certify", "slack_of"]
@@ -74,8 +74,12 @@ class Certificate:
         return max(max(p.residual, p.complementarity, p.disturbed) for p in self.levels)
 
     def holds(self, tolerance: float = 1e-8) -> bool:
-        """Whether every condition of every level holds to the tolerance."""
-        return bool(self.worst <= tolerance)
+        """Whether every condition of every level holds to the tolerance.
+
+        Raises:
+            InputError: the tolerance is not a number of at least 0.
+        """
+        return bool(self.worst <= positive(tolerance, "tolerance", zero=True))
 
     def __repr__(self) -> str:
         rows = [

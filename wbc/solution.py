@@ -12,7 +12,8 @@ import numpy as np
 from wbc.arrays import Array, IntArray
 from wbc.bounds import at_bounds
 from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
-from wbc.errors import StaleError, UnknownName
+from wbc.checks import known
+from wbc.errors import StaleError
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.resolver import Answer, Status
 from wbc.stack import Stack, Term
@@ -172,10 +173,8 @@ class Solution:
             StaleError: the controller has moved on, or this tick fell back.
         """
         stack = self._fresh()
-        for term in stack.terms:
-            if term.task.name == task:
-                return self._report(stack, term)
-        raise UnknownName("task", task, [t.task.name for t in stack.terms])
+        found = {term.task.name: term for term in stack.terms}
+        return self._report(stack, found[known("task", task, found)])
 
     def reports(self) -> tuple[TaskReport, ...]:
         """How all tasks fared, from the top level down."""

@@ -77,7 +77,10 @@ class State:
         Raises:
             UnknownName: the robot has no such frame.
         """
-        known = self._frames.get(name)
+        try:
+            known = self._frames.get(name)
+        except TypeError:  # no name, and not even hashable
+            raise UnknownName("frame", name, self.robot.frames) from None
         if known is None:
             known = self._frames[name] = self._compute(self.robot.frame_id(name))
         return known
@@ -112,9 +115,10 @@ class State:
         Raises:
             UnknownName: nothing was measured under that name.
         """
-        if sensor not in self.wrenches:
-            raise UnknownName("force sensor", sensor, self.wrenches)
-        return self.wrenches[sensor]
+        try:
+            return self.wrenches[sensor]
+        except (KeyError, TypeError):
+            raise UnknownName("force sensor", sensor, self.wrenches) from None
 
     def advanced(self, task: Task) -> Array:
         """Torques (n,) of the contact forces that a task counts on [Nm].

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, final
 
 from wbc.arrays import Array
+from wbc.checks import known
 
 __all__ = ["Analysis", "Dependency", "LevelAnalysis", "Metric"]
 
@@ -107,12 +108,8 @@ class Analysis:
         Raises:
             UnknownName: there is no such task.
         """
-        from wbc.errors import UnknownName
-
-        for level in self.levels:
-            if task in level.tasks:
-                return level
-        raise UnknownName("task", task, (t for lv in self.levels for t in lv.tasks))
+        found = {name: level for level in self.levels for name in level.tasks}
+        return found[known("task", task, found)]
 
     def __str__(self) -> str:
         return "\n".join(self._lines())

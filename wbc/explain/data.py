@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, final
 
 from wbc.arrays import Array
-from wbc.errors import UnknownName
+from wbc.checks import known
 from wbc.explain.fading import Fading
 from wbc.explain.text import paid, table
 
@@ -177,10 +177,8 @@ class Explanation:
         Raises:
             UnknownName: no task of that name is in the hierarchy.
         """
-        for task in self.tasks:
-            if task.name == name:
-                return task
-        raise UnknownName("task", name, [task.name for task in self.tasks])
+        found = {task.name: task for task in self.tasks}
+        return found[known("task", name, found)]
 
     def blocked(self, name: str) -> tuple[Blocker, ...]:
         """What blocks a task, strongest first; empty if it is met.

@@ -19,7 +19,7 @@ import numpy as np
 
 from wbc.arrays import Array
 from wbc.certificate import slack_of
-from wbc.errors import UnknownName
+from wbc.checks import known
 from wbc.lexicographic import Lexicographic
 from wbc.stack import Stack
 
@@ -79,9 +79,7 @@ class StrictnessCost:
             UnknownName: no task of that name is in the hierarchy.
         """
         names = {task: cost for cost in self.levels for task in cost.name.split(" + ")}
-        if name not in names:
-            raise UnknownName("task", name, names)
-        return names[name]
+        return names[known("task", name, names)]
 
     def __repr__(self) -> str:
         cells = [["level", "tasks", "asked", "alone", "got", "unit", "taken by"]]
