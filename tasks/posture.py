@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
 from wbc import PD, Damper, Robot
-from wbc.arrays import Array, frozen
+from wbc.arrays import Array, IntArray, frozen
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -106,6 +106,10 @@ class Posture(CatalogueTask):
         """Indices of the joints."""
         return np.array(_indices(robot, self.joints), dtype=np.float64)
 
+    def joint_indices(self, robot: Robot) -> IntArray:
+        """Of its rows."""
+        return np.array(_indices(robot, self.joints))
+
 
 @final
 class Damping(CatalogueTask):
@@ -150,6 +154,10 @@ class Damping(CatalogueTask):
     def table(self, robot: Robot) -> Array:
         """Indices of the joints."""
         return np.array(_indices(robot, self.joints), dtype=np.float64)
+
+    def joint_indices(self, robot: Robot) -> IntArray:
+        """Of its rows."""
+        return np.array(_indices(robot, self.joints))
 
 
 def _listed(joints: Sequence[str] | None, task: str) -> tuple[str, ...] | None:

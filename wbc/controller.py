@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, positive
-from wbc.assembly import finite, measured
+from wbc.assembly import measured
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.hqp import HierarchicalQP
@@ -19,9 +19,12 @@ from wbc.solution import Solution
 from wbc.state import State
 from wbc.task import Task
 from wbc.transition import Bound, Transition
+from wbc.vectors import finite
 
 __all__ = ["Controller", "resolve"]
 
+FLOAT = np.dtype(np.float64)
+NOT_FINITE = "a measurement is not finite"
 FALLBACK_DAMPING = 10.0
 """Rate [1/s] at which the fallback damps joint velocities."""
 
@@ -86,19 +89,17 @@ class Controller:
         Raises:
             InputError: q or v has the wrong shape, which is no sensor fault.
         """
-        q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
+        q, v = np.array(q, FLOAT), np.array(v, FLOAT)
         if q.shape != self._shape or v.shape != self._shape:
             raise InputError(
                 f"q and v have shapes {q.shape}, {v.shape}; need {self._shape}."
             )
-        forces, t = self._no_wrench, float(t)
+        forces = self._no_wrench
         if wrenches:
             forces = {k: _wrench(k, w) for k, w in wrenches.items()}
-        if not self._finite(q, v, t, forces):
-            return self._hold(
-                q, v, Status.SENSOR_INVALID, "a measurement is not finite"
-            )
-        return self._tick(q, v, t, forces)
+            if not all(finite(w) for w in forces.values()):
+                return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
+        return self._tick(q, v, float(t), forces)
 
     def change(
         self,
@@ -147,7 +148,6 @@ class Controller:
     def _tick(
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
     ) -> Solution:
-        self._last = q
         self._state.refresh(q, v, t, wrenches)
         share = 1.0
         try:
@@ -156,8 +156,10 @@ class Controller:
             else:
                 torque, answer, share = self._pass_on(self._transition)
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
+            if not measured(q, v, t):
+                return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        self._state.commanded = torque
+        self._last, self._state.commanded = q, torque
         return Solution(self._stack, torque, answer, answer.status, "", share)
 
     def _pass_on(self, transition: Transition) -> tuple[Array, Answer, float]:
@@ -167,11 +169,6 @@ class Controller:
         if transition.finished:
             self._transition = None
         return torque, answer, transition.share
-
-    @staticmethod
-    def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        good = measured(q, v, t)
-        return good and (not wrenches or all(finite(w) for w in wrenches.values()))
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
         """Gravity compensation and damping within the torque limits.

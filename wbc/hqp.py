@@ -15,7 +15,7 @@ from wbc.certificate import Certificate, certify
 from wbc.errors import InputError
 from wbc.lexicographic import Lexicographic
 from wbc.qp import DEFAULT_BACKEND, QpBackend
-from wbc.resolver import Answer, Resolver, Solver, Status
+from wbc.resolver import Answer, Packed, Parts, Resolver, Solver, Status
 from wbc.stack import Stack
 from wbc.state import State
 
@@ -59,20 +59,14 @@ class _Compiled(Solver):
         sizes = [where.stop - where.start for where in stack.levels]
         n, m = stack.robot.nv, stack.lower.size
         self._stack, self._solver = stack, Lexicographic(sizes, n)
-        self._torque, self._vdot = slice(n), slice(n, 2 * n)
-        self._slack, self._ranks = slice(2 * n, 2 * n + m), slice(2 * n + m, None)
+        ends = (n, 2 * n, 2 * n + m)
+        self._parts = Parts(*map(slice, (0, *ends), (*ends, None)))
         stack.connect(self._solver.address)
 
-    def tick(self, stack: Stack, state: State) -> Answer:
+    def tick(self, stack: Stack, state: State) -> Packed:
         """The same in one compiled call."""
         found, done = stack.resolve(state)
-        return Answer(
-            found[self._vdot],
-            found[self._ranks],
-            SOLVED if done else INCOMPLETE,
-            found[self._slack],
-            found[self._torque],
-        )
+        return Packed(found, self._parts, SOLVED if done else INCOMPLETE)
 
     def solve(self) -> Answer:
         """Resolve the present rows."""

@@ -9,12 +9,12 @@ from typing import final
 
 import numpy as np
 
-from wbc.arrays import Array, IntArray
+from wbc.arrays import Array
 from wbc.bounds import at_bounds
 from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
-from wbc.resolver import Answer, Status
+from wbc.resolver import Answer, Packed, Status
 from wbc.stack import Stack, Term
 from wbc.task import MotionTask
 
@@ -53,8 +53,6 @@ class Solution:
 
     Attributes:
         torque: (n,) joint torques [Nm or N], always finite.
-        acceleration: (n,) joint accelerations that they cause in the model, NaN
-            after a fallback.
         status: how the tick ended.
         message: what went wrong, empty if nothing did.
         share: of the hierarchy that reports are about; below 1 while a change to it
@@ -62,31 +60,31 @@ class Solution:
     """
 
     __slots__ = (
-        "_kinetic", "_ranks", "_slacks", "_stack", "_tick", "acceleration", "message",
-        "share", "status", "torque",
+        "_answer", "_stack", "_tick", "message", "share", "status", "torque",
     )  # fmt: skip
 
     def __init__(
         self,
         stack: Stack,
         torque: Array,
-        answer: Answer | None,
+        answer: Answer | Packed | None,
         status: Status,
         message: str = "",
         share: float = 1.0,
     ) -> None:
-        self._stack, self._tick = stack, stack.tick
+        self._stack, self._tick, self._answer = stack, stack.tick, answer
         self.torque, self.status, self.message = torque, status, message
         self.share = share
-        self._ranks: Array | IntArray | None = None
-        self._slacks: Array | None = None
-        self._kinetic = True
-        if answer is None:
-            self.acceleration = np.full(torque.size, np.nan)
-        else:
-            self.acceleration = answer.vdot
-            self._ranks, self._slacks = answer.ranks, answer.slacks
-            self._kinetic = answer.kinetic
+
+    @property
+    def acceleration(self) -> Array:
+        """(n,) joint accelerations that the torques cause in the model.
+
+        NaN after a fallback.
+        """
+        if self._answer is None:
+            return np.full(self.torque.size, np.nan)
+        return self._answer.vdot
 
     @property
     def ok(self) -> bool:
@@ -99,7 +97,8 @@ class Solution:
 
         Empty after a fallback.
         """
-        return () if self._ranks is None else tuple(map(int, self._ranks.tolist()))
+        answer = self._answer
+        return () if answer is None else tuple(map(int, answer.ranks.tolist()))
 
     @property
     def lost(self) -> tuple[int, ...]:
@@ -127,18 +126,17 @@ class Solution:
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
-        return self._certify(self._kinetic)
+        return self._certify(self._answer is None or self._answer.kinetic)
 
     def _certify(self, kinetic: bool) -> Certificate:
         stack = self._fresh()
         where = stack.levels
         A = stack.Ay if kinetic else stack.A
         levels = [(A[k], stack.lower[k], stack.upper[k]) for k in where]
-        then = None if self._slacks is None else [self._slacks[k] for k in where]
+        slacks = None if self._answer is None else self._answer.slacks
+        then = None if slacks is None else [slacks[k] for k in where]
         x = self.acceleration
-        return certify(
-            levels, np.linalg.solve(stack.L_inv.T, x) if kinetic else x, then
-        )
+        return certify(levels, stack.coordinates(x) if kinetic else x, then)
 
     def level_rows(self) -> list[tuple[Array, Array, Array]]:
         """Copies of the rows that were resolved: (A (m, n), lower (m,), upper (m,)).

@@ -8,11 +8,12 @@ import numpy as np
 
 from wbc import slots
 from wbc.arrays import Array
-from wbc.assembly import back_substitute, inverse_dynamics, kept
+from wbc.assembly import kept, measured
 from wbc.binding import register
 from wbc.compiled import announce
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
+from wbc.inertia import back_substitute, inverse_dynamics
 from wbc.kernel import Kernel
 from wbc.pointers import address_of
 from wbc.program import Place, Program
@@ -85,7 +86,8 @@ class Stack:
         terms: the tasks and their places.
         M, h: inertia (n, n) and bias torques (n,) of the last state; h includes
             torques of the contact forces that tasks count on.
-        L_inv: (n, n) inverse of the Cholesky factor of M.
+        L: (n, n) Cholesky factor of M.
+        U: (n, n) L^-T.
         v: (n,) joint velocities of the last state.
         tick: how often the rows were rewritten.
     """
@@ -131,9 +133,11 @@ class Stack:
             np.zeros((2, m)),
         )
         self.lower, self.upper = self._bounds
-        self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
+        self.M, self.h = np.eye(n), np.zeros(n)
+        self.L, self.U = np.eye(n), np.eye(n)
         self._M, self.v = self.M, np.zeros(n)
         self.weights, self._torque = np.ones(m), np.zeros(m)
+        self._joint = np.full(m, -1)
         for term in self.terms:
             where = term.where
             term.rows = rows_over(self.raw[where], self.bands[:, where])
@@ -145,9 +149,11 @@ class Stack:
             address_of(array)
             for array in (self.raw, self.bands, self.weights, self._torque)
         ]
-        self._table[slots.VDOT_ROWS : slots.L_INV + 1] = [
-            address_of(array) for array in (self.A, self.Ay, self._bounds, self.L_inv)
+        self._table[slots.VDOT_ROWS : slots.INVERSE + 1] = [
+            address_of(array)
+            for array in (self.A, self.Ay, self._bounds, self.L, self.U)
         ]
+        self._table[slots.JOINT] = address_of(self._joint)
         on_top = [term for term in self.terms if term.level == 0]
         if len(on_top) == 1 and on_top[0].task.space == "torque":
             self._table[slots.GUARDED] = on_top[0].where.stop
@@ -195,11 +201,19 @@ class Stack:
         if state is not self._state:
             self._bind(state)
         self.tick += 1
+        if (self._python or self._advancing) and not self._prepare(state):
+            return slots.UNMEASURED
+        return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
+
+    def _prepare(self, state: State) -> bool:
+        """What compiled code leaves to Python, unless a measurement is not finite."""
+        if not measured(state.q, state.v, state.t):
+            return False
         for term in self._python:
             term.task.update(state, term.rows)
         if self._advancing:
             self._advance(state)
-        return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
+        return True
 
     def _advance(self, state: State) -> None:
         """Let tasks with a memory move on, and add their contact torques to h."""
@@ -217,6 +231,8 @@ class Stack:
                     f"task '{term.task.name}' wrote a row '{row}' that is not finite.",
                     term.level,
                 )
+        if outcome == slots.UNMEASURED:
+            raise SolverError("a position, a velocity or the time is not finite.")
         if outcome == slots.NOT_FINITE:
             raise SolverError("a torque is not finite.")
         if outcome == slots.BEYOND:
@@ -242,6 +258,10 @@ class Stack:
             for term in self.terms
             if term.kernel is not None
         ]
+        self._joint[:], self.A[:], self.Ay[:] = -1, 0.0, 0.0
+        for term in self.terms:
+            if term.kernel is not None and term.kernel.joints is not None:
+                self._joint[term.where] = term.kernel.joints
         table, self._runner = self._table, without_kernels
         table[slots.INERTIA : slots.BIAS + 1] = address_of(state.M), address_of(self.h)
         if places:
@@ -253,8 +273,12 @@ class Stack:
     def acceleration(self, y: Array) -> Array:
         """Vdot = L^-T y, (n,)."""
         vdot = np.empty(y.size)
-        back_substitute(self.L_inv, y, vdot)
+        back_substitute(self.U, y, vdot)
         return vdot
+
+    def coordinates(self, vdot: Array) -> Array:
+        """Y = L^T vdot, (n,)."""
+        return np.asarray(self.L.T @ vdot)
 
     def torque(self, vdot: Array) -> Array:
         """Tau = M vdot + h, (n,) [Nm].

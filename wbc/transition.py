@@ -20,7 +20,7 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.errors import InputError, SolverError
 from wbc.hierarchy import Hierarchy
-from wbc.resolver import Answer, Resolver, Status
+from wbc.resolver import Answer, Packed, Resolver, Status
 from wbc.robot import Robot
 from wbc.stack import Stack
 from wbc.state import State
@@ -55,7 +55,7 @@ class Bound:
         self.stack = Stack(robot, hierarchy)
         self.solver = resolver.start(self.stack)
 
-    def tick(self, state: State) -> tuple[Array, Answer]:
+    def tick(self, state: State) -> tuple[Array, Answer | Packed]:
         """Torques (n,) at a state, and what they come from.
 
         Raises:
@@ -157,9 +157,11 @@ class Transition:
         self.share = self._live[-1].share if len(self._live) > 1 else 1.0
         return blended
 
-    def _blend(self, found: list[tuple[Array, Answer]]) -> tuple[Array, Answer]:
+    def _blend(
+        self, found: list[tuple[Array, Answer | Packed]]
+    ) -> tuple[Array, Answer]:
         """What all of them give together, oldest first."""
-        torque, (vdot, *_) = found[0]
+        torque, vdot = found[0][0], found[0][1].vdot
         status, ramps = found[-1][1].status, self._live[1:]
         self._live[0].u = 1.0  # nothing older is left to blend with
         for ramp, (tau, answer) in zip(ramps, found[1:], strict=True):
@@ -169,6 +171,6 @@ class Transition:
         if any(answer.status is Status.INCOMPLETE for _, answer in found):
             status = Status.INCOMPLETE
         newest = found[-1][1]
-        return torque, newest._replace(
-            vdot=vdot, status=status, slacks=None, torque=torque
+        return torque, Answer(
+            vdot, newest.ranks, status, torque=torque, kinetic=newest.kinetic
         )
