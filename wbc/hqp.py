@@ -61,12 +61,14 @@ class _Compiled(Solver):
         self._stack, self._solver = stack, Lexicographic(sizes, n)
         ends = (n, 2 * n, 2 * n + m)
         self._parts = Parts(*map(slice, (0, *ends), (*ends, None)))
+        self._size = stack.answer_size
         stack.connect(self._solver.address)
 
     def tick(self, stack: Stack, state: State) -> Packed:
         """The same in one compiled call."""
-        found, done = stack.resolve(state)
-        return Packed(found, self._parts, SOLVED if done else INCOMPLETE)
+        found = np.empty(self._size)
+        status = SOLVED if stack.run(state, found) else INCOMPLETE
+        return Packed(found, self._parts, status)
 
     def solve(self) -> Answer:
         """Resolve the present rows."""

@@ -90,6 +90,7 @@ class Stack:
         U: (n, n) L^-T.
         v: (n,) joint velocities of the last state.
         tick: how often the rows were rewritten.
+        answer_size: of the array that `run` writes.
     """
 
     def __init__(self, robot: Robot, hierarchy: Hierarchy) -> None:
@@ -105,7 +106,7 @@ class Stack:
                 m = term.where.stop
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
-        self._answer_size = 2 * robot.nv + m + len(self.levels)
+        self.answer_size = 2 * robot.nv + m + len(self.levels)
         self._program: Program | None = None
         self._state: State | None = None
         self.tick = 0
@@ -114,9 +115,10 @@ class Stack:
 
     def _sort_out(self) -> None:
         """Tell tasks in plain Python, and those with a memory, from the others."""
-        self._python = [term for term in self.terms if term.kernel is None]
+        self._plain = [term for term in self.terms if term.kernel is None]
         everyone = [term.task for term in self.terms]
         self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
+        self._python = bool(self._plain or self._advancing)
 
     def read_afresh(self) -> None:
         """Read gains and settings of the tasks again, at the next update."""
@@ -158,58 +160,56 @@ class Stack:
         if len(on_top) == 1 and on_top[0].task.space == "torque":
             self._table[slots.GUARDED] = on_top[0].where.stop
 
-    def update(self, state: State) -> None:
-        """Rewrite all rows at this state.
-
-        Raises:
-            ModelError: the inertia matrix is not positive definite.
-            SolverError: a task wrote a row that is not finite.
-        """
-        outcome = self._run(state, ROWS_ONLY)
-        if outcome != slots.SOLVED:
-            self._complain(outcome)
-
     def connect(self, solver: int) -> None:
-        """Let `resolve` use a compiled solver, which must stay alive.
+        """Let `run` use a compiled solver, which must stay alive.
 
         Args:
             solver: address of its memory.
         """
         self._table[slots.SOLVER] = solver
 
-    def resolve(self, state: State) -> tuple[Array, bool]:
+    def update(self, state: State) -> None:
+        """Rewrite all rows at this state.
+
+        Raises:
+            ModelError: the inertia matrix is not positive definite.
+            SolverError: a measurement, or a row that a task wrote, is not finite.
+        """
+        self.run(state, ROWS_ONLY)
+
+    def run(self, state: State, out: Array) -> bool:
         """Rewrite all rows and solve them with the connected solver, in one call.
 
+        Args:
+            state: the state.
+            out: (`answer_size`,) torques, accelerations, slacks and ranks of the levels
+                are written.
+
         Returns:
-            (2 n + m + p,) torques, accelerations, slacks and ranks of the levels; and
             whether the solver came to an end.
 
         Raises:
             ModelError, SolverError: as for `update`, or a torque is not finite or
                 breaks limits that stand alone on top.
         """
-        out = np.empty(self._answer_size)
-        outcome = self._run(state, out)
-        if outcome == slots.SOLVED:
-            return out, True
-        if outcome != slots.UNSOLVED:
-            self._complain(outcome)
-        return out, False
-
-    def _run(self, state: State, out: Array) -> int:
         self.v = state.v
         if state is not self._state:
             self._bind(state)
         self.tick += 1
-        if (self._python or self._advancing) and not self._prepare(state):
-            return slots.UNMEASURED
-        return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
+        outcome = slots.UNMEASURED
+        if not self._python or self._prepare(state):
+            table, run = self._table, self._runner
+            outcome = run(table, state.q, state.v, state.t, state.dt, out)
+        solved = bool(outcome == slots.SOLVED)
+        if not solved and outcome != slots.UNSOLVED:
+            self._complain(outcome)
+        return solved
 
     def _prepare(self, state: State) -> bool:
         """What compiled code leaves to Python, unless a measurement is not finite."""
         if not measured(state.q, state.v, state.t):
             return False
-        for term in self._python:
+        for term in self._plain:
             term.task.update(state, term.rows)
         if self._advancing:
             self._advance(state)
