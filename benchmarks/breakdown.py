@@ -67,9 +67,7 @@ def _parts(loop: Loop) -> dict[str, Call]:
         found = np.empty(stack.answer_size)
         return {
             "- pin: State.refresh": lambda: state.refresh(q, v, t),
-            "- compiled: rows, assembly, solver, torque": lambda: stack.run(
-                state, found
-            ),
+            "- compiled: rows, solver, torque": lambda: stack.run(state, found),
         }
     except AttributeError:
         return {}

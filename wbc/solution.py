@@ -4,44 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.bounds import at_bounds
-from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
+from wbc.certificate import Certificate, certify
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
+from wbc.report import TaskReport, active_rows, shortfalls, task_report
 from wbc.resolver import Answer, Packed, Status
-from wbc.stack import Stack, Term
+from wbc.stack import Stack
 from wbc.task import MotionTask
 
-__all__ = ["Solution", "TaskReport"]
-
-
-@final
-@dataclass(frozen=True, slots=True, eq=False)
-class TaskReport:
-    """How one task fared in a tick.
-
-    Attributes:
-        name: of the task.
-        level: from 1 at the top.
-        unit: of its error.
-        error: (m,) in that unit, NaN for inequality tasks.
-        residual: (m,) what of the wanted acceleration (or torque) was not delivered,
-            in the task's own, unweighted rows.
-        active: names of its rows that sit at a bound or beyond it.
-    """
-
-    name: str
-    level: int
-    unit: str
-    error: Array
-    residual: Array
-    active: tuple[str, ...]
+__all__ = ["Solution"]
 
 
 @final
@@ -162,13 +138,15 @@ class Solution:
         stack = self._fresh()
         for term in stack.terms:
             if term.task.name == task:
-                return self._report(stack, term)
+                return task_report(stack, term, self.acceleration)
         raise UnknownName("task", task, [t.task.name for t in stack.terms])
 
     def reports(self) -> tuple[TaskReport, ...]:
         """How all tasks fared, from the top level down."""
         stack = self._fresh()
-        return tuple(self._report(stack, term) for term in stack.terms)
+        return tuple(
+            task_report(stack, term, self.acceleration) for term in stack.terms
+        )
 
     def explain(self) -> Explanation:
         """Which tasks are met, what blocks the others, and at what price; print it.
@@ -200,16 +178,7 @@ class Solution:
 
     def active_rows(self) -> list[str]:
         """Inequality rows at a bound or beyond it, as "level k: task: row"."""
-        stack = self._fresh()
-        at = np.empty(stack.lower.size, dtype=np.bool_)
-        if not at_bounds(stack.A, self.acceleration, stack.lower, stack.upper, at):
-            return []
-        return [
-            f"level {term.level + 1}: {term.task.name}: {name}"
-            for term in stack.terms
-            for name, active in zip(term.names, at[term.where], strict=True)
-            if active
-        ]
+        return active_rows(self._fresh(), self.acceleration)
 
     def shortfalls(self) -> list[tuple[int, str, float]]:
         """Level, name and relative shortfall of every task, cheap enough for a log.
@@ -217,35 +186,7 @@ class Solution:
         |missing| / |wanted| of the weighted rows, at most 1, and 0 where a task is met
         up to round-off. Of inequalities the broken rows alone count.
         """
-        stack, vdot = self._fresh(), self.acceleration
-        value = stack.A @ vdot
-        wanted = np.clip(value, stack.lower, stack.upper)
-        missing = wanted - value
-        length = np.sqrt(np.einsum("mn,mn->m", stack.A, stack.A))
-        near = AT_BOUND * (length * (1.0 + math.sqrt(vdot @ vdot)) + np.abs(value))
-        missing[np.abs(missing) <= near] = 0.0
-        wanted[(stack.lower < stack.upper) & (missing == 0.0)] = 0.0
-        found = []
-        for term in stack.terms:
-            lack, wish = missing[term.where], wanted[term.where]
-            share = _share(math.sqrt(lack @ lack), math.sqrt(wish @ wish))
-            found.append((term.level + 1, term.task.name, share))
-        return found
-
-    def _report(self, stack: Stack, term: Term) -> TaskReport:
-        where = term.where
-        A, lower, upper = stack.A[where], stack.lower[where], stack.upper[where]
-        slack = slack_of(A, self.acceleration, lower, upper)
-        at = np.empty(lower.size, dtype=np.bool_)
-        at_bounds(A, self.acceleration, lower, upper, at)
-        return TaskReport(
-            name=term.task.name,
-            level=term.level + 1,
-            unit=term.task.unit,
-            error=np.where(lower < upper, np.nan, term.rows.error),
-            residual=slack / term.weight,
-            active=tuple(n for n, a in zip(term.names, at, strict=True) if a),
-        )
+        return shortfalls(self._fresh(), self.acceleration)
 
     def _fresh(self) -> Stack:
         if self._stack.tick != self._tick:
@@ -263,8 +204,3 @@ class Solution:
     def __repr__(self) -> str:
         torque = np.array2string(self.torque, precision=3, suppress_small=True)
         return f"Solution({self.status.name}, torque={torque}, ranks={self.ranks})"
-
-
-def _share(part: float, whole: float) -> float:
-    """Part / whole, 1 where the part is as large or larger."""
-    return 0.0 if part == 0.0 else 1.0 if part >= whole else part / whole

@@ -14,51 +14,18 @@ from wbc.compiled import announce
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
 from wbc.inertia import back_substitute, inverse_dynamics
-from wbc.kernel import Kernel
 from wbc.pointers import address_of
 from wbc.program import Place, Program
 from wbc.robot import Robot
-from wbc.rows import Rows, rows_over
+from wbc.rows import rows_over
 from wbc.state import State
 from wbc.task import Task
+from wbc.term import Term
 from wbc.tick import without_kernels
 
-__all__ = ["Stack", "Term"]
+__all__ = ["Stack"]
 
 ROWS_ONLY = np.empty(0)
-
-
-@final
-class Term:
-    """One task's place in a stack.
-
-    Attributes:
-        task: the task.
-        weight: what its residual is multiplied by.
-        level: index of its level, 0 at the top.
-        where: slice of its rows in the stacked arrays.
-        rows: what the task writes: views of the stack's `raw` and `bands`.
-        names: one name a row.
-        kernel: its compiled half, None for a task in plain Python.
-    """
-
-    __slots__ = ("kernel", "level", "names", "rows", "task", "weight", "where")
-
-    rows: Rows
-    kernel: Kernel | None
-
-    def __init__(
-        self, task: Task, weight: float, level: int, start: int, robot: Robot
-    ) -> None:
-        task.check(robot)
-        self.task, self.weight, self.level = task, weight, level
-        self.names = task.row_names(robot)
-        self.where = slice(start, start + len(self.names))
-        self.read(robot)
-
-    def read(self, robot: Robot) -> None:
-        """Read gains and settings of the task."""
-        self.kernel = self.task.kernel(robot) if self.names else None
 
 
 @final

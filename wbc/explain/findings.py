@@ -18,8 +18,9 @@ from wbc.explain.data import (
 )
 from wbc.explain.response import NEGLIGIBLE, Response, Tick, responses
 from wbc.linalg import factorise, norm
-from wbc.stack import Stack, Term
+from wbc.stack import Stack
 from wbc.task import MotionTask
+from wbc.term import Term
 
 __all__ = ["OPTIMAL", "explain"]
 
