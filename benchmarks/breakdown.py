@@ -64,7 +64,7 @@ def _parts(loop: Loop) -> dict[str, Call]:
     try:
         state, stack = controller._state, controller._stack
         q, v, t = loop.q, loop.v, contender.t
-        found = np.empty(stack.answer_size)
+        found = np.empty(stack.parts.ranks.stop)
         return {
             "- pin: State.refresh": lambda: state.refresh(q, v, t),
             "- compiled: rows, solver, torque": lambda: stack.run(state, found),

@@ -152,15 +152,16 @@ class Controller:
         share = 1.0
         try:
             if self._transition is None:
-                torque, answer = self._bound.tick(self._state)
+                torque, answer, status = self._bound.tick(self._state)
             else:
                 torque, answer, share = self._pass_on(self._transition)
+                status = answer.status
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
             if not measured(q, v, t):
                 return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
         self._last, self._state.commanded = q, torque
-        return Solution(self._stack, torque, answer, answer.status, "", share)
+        return Solution(self._stack, torque, answer, status, "", share)
 
     def _pass_on(self, transition: Transition) -> tuple[Array, Answer, float]:
         """A tick of a change: torques, their source, share of the newest hierarchy."""
@@ -220,5 +221,4 @@ def resolve(
         SolverError: the resolver found no solution.
     """
     bound = Bound(state.robot, Hierarchy.of(hierarchy), resolver or HierarchicalQP())
-    torque, answer = bound.tick(state)
-    return Solution(bound.stack, torque, answer, answer.status)
+    return Solution(bound.stack, *bound.tick(state))

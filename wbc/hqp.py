@@ -15,7 +15,7 @@ from wbc.certificate import Certificate, certify
 from wbc.errors import InputError
 from wbc.lexicographic import Lexicographic
 from wbc.qp import DEFAULT_BACKEND, QpBackend
-from wbc.resolver import Answer, Packed, Parts, Resolver, Solver, Status
+from wbc.resolver import Answer, Resolver, Solver, Status
 from wbc.stack import Stack
 from wbc.state import State
 
@@ -57,18 +57,15 @@ class _Compiled(Solver):
 
     def __init__(self, stack: Stack) -> None:
         sizes = [where.stop - where.start for where in stack.levels]
-        n, m = stack.robot.nv, stack.lower.size
-        self._stack, self._solver = stack, Lexicographic(sizes, n)
-        ends = (n, 2 * n, 2 * n + m)
-        self._parts = Parts(*map(slice, (0, *ends), (*ends, None)))
-        self._size = stack.answer_size
+        self._stack, self._solver = stack, Lexicographic(sizes, stack.robot.nv)
+        self._size = stack.parts.ranks.stop
         stack.connect(self._solver.address)
 
-    def tick(self, stack: Stack, state: State) -> Packed:
+    def tick(self, stack: Stack, state: State) -> Array:
         """The same in one compiled call."""
         found = np.empty(self._size)
-        status = SOLVED if stack.run(state, found) else INCOMPLETE
-        return Packed(found, self._parts, status)
+        stack.run(state, found)
+        return found
 
     def solve(self) -> Answer:
         """Resolve the present rows."""

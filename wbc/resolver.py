@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from enum import Enum
-from typing import NamedTuple, final
+from typing import NamedTuple
 
 from wbc.arrays import Array, IntArray
 from wbc.stack import Stack
 from wbc.state import State
 
-__all__ = ["Answer", "Packed", "Parts", "Resolver", "Solver", "Status"]
+__all__ = ["Answer", "Resolver", "Solver", "Status", "unpack"]
 
 
 class Status(Enum):
@@ -48,54 +48,13 @@ class Answer(NamedTuple):
     kinetic: bool = True
 
 
-class Parts(NamedTuple):
-    """Where the parts of an answer lie in one array.
-
-    Attributes:
-        torque, vdot, slacks, ranks: of the same names in `Answer`.
-    """
-
-    torque: slice
-    vdot: slice
-    slacks: slice
-    ranks: slice
-
-
-@final
-class Packed:
-    """An answer as compiled code wrote it: in one array, and cut out when asked for.
-
-    Args:
-        found: the array.
-        parts: where they lie.
-        status: SOLVED or INCOMPLETE.
-
-    Attributes:
-        torque: (n,) joint torques, which everyone asks for.
-    """
-
-    __slots__ = ("_found", "_parts", "status", "torque")
-
-    kinetic = True
-
-    def __init__(self, found: Array, parts: Parts, status: Status) -> None:
-        self._found, self._parts, self.status = found, parts, status
-        self.torque = found[parts.torque]
-
-    @property
-    def vdot(self) -> Array:
-        """(n,) joint accelerations."""
-        return self._found[self._parts.vdot]
-
-    @property
-    def slacks(self) -> Array:
-        """(m,) weighted slack of every row when its own level was solved."""
-        return self._found[self._parts.slacks]
-
-    @property
-    def ranks(self) -> Array:
-        """(p,) for each level, how many independent directions it could use."""
-        return self._found[self._parts.ranks]
+def unpack(found: Answer | Array, stack: Stack, status: Status) -> Answer:
+    """An answer, cut out of the array that `Stack.run` wrote if it is one."""
+    if isinstance(found, Answer):
+        return found
+    where = stack.parts
+    torque, slacks = found[where.torque], found[where.slacks]
+    return Answer(found[where.vdot], found[where.ranks], status, slacks, torque)
 
 
 class Solver(ABC):
@@ -109,8 +68,11 @@ class Solver(ABC):
             SolverError: no solution was found.
         """
 
-    def tick(self, stack: Stack, state: State) -> Answer | Packed:
+    def tick(self, stack: Stack, state: State) -> Answer | Array:
         """Rewrite the stack's rows at this state, and resolve them.
+
+        Returns:
+            the answer, or the array that `Stack.run` wrote.
 
         Raises:
             ModelError, SolverError: as for `Stack.update` and `solve`.

@@ -13,7 +13,7 @@ from wbc.certificate import Certificate, certify
 from wbc.errors import StaleError, UnknownName
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
 from wbc.report import TaskReport, active_rows, shortfalls, task_report
-from wbc.resolver import Answer, Packed, Status
+from wbc.resolver import Answer, Status, unpack
 from wbc.stack import Stack
 from wbc.task import MotionTask
 
@@ -36,19 +36,19 @@ class Solution:
     """
 
     __slots__ = (
-        "_answer", "_stack", "_tick", "message", "share", "status", "torque",
+        "_found", "_stack", "_tick", "message", "share", "status", "torque",
     )  # fmt: skip
 
     def __init__(
         self,
         stack: Stack,
         torque: Array,
-        answer: Answer | Packed | None,
+        answer: Answer | Array | None,
         status: Status,
         message: str = "",
         share: float = 1.0,
     ) -> None:
-        self._stack, self._tick, self._answer = stack, stack.tick, answer
+        self._stack, self._tick, self._found = stack, stack.tick, answer
         self.torque, self.status, self.message = torque, status, message
         self.share = share
 
@@ -58,9 +58,14 @@ class Solution:
 
         NaN after a fallback.
         """
-        if self._answer is None:
-            return np.full(self.torque.size, np.nan)
-        return self._answer.vdot
+        answer = self._answer
+        return np.full(self.torque.size, np.nan) if answer is None else answer.vdot
+
+    @property
+    def _answer(self) -> Answer | None:
+        """What the resolver said, None after a fallback."""
+        found = self._found
+        return None if found is None else unpack(found, self._stack, self.status)
 
     @property
     def ok(self) -> bool:
@@ -102,16 +107,17 @@ class Solution:
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
-        return self._certify(self._answer is None or self._answer.kinetic)
+        answer = self._answer
+        return self._certify(answer is None or answer.kinetic)
 
     def _certify(self, kinetic: bool) -> Certificate:
         stack = self._fresh()
         where = stack.levels
         A = stack.Ay if kinetic else stack.A
         levels = [(A[k], stack.lower[k], stack.upper[k]) for k in where]
-        slacks = None if self._answer is None else self._answer.slacks
+        answer, x = self._answer, self.acceleration
+        slacks = None if answer is None else answer.slacks
         then = None if slacks is None else [slacks[k] for k in where]
-        x = self.acceleration
         return certify(levels, stack.coordinates(x) if kinetic else x, then)
 
     def level_rows(self) -> list[tuple[Array, Array, Array]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NoReturn, final
+from typing import NamedTuple, NoReturn, final
 
 import numpy as np
 
@@ -23,9 +23,25 @@ from wbc.task import Task
 from wbc.term import Term
 from wbc.tick import without_kernels
 
-__all__ = ["Stack"]
+__all__ = ["Parts", "Stack"]
 
 ROWS_ONLY = np.empty(0)
+
+
+class Parts(NamedTuple):
+    """Where things lie in the one array that a compiled tick writes.
+
+    Attributes:
+        torque: (n,) joint torques.
+        vdot: (n,) joint accelerations.
+        slacks: (m,) weighted slack of every row when its own level was solved.
+        ranks: (p,) for each level, how many independent directions it could use.
+    """
+
+    torque: slice
+    vdot: slice
+    slacks: slice
+    ranks: slice
 
 
 @final
@@ -57,7 +73,8 @@ class Stack:
         U: (n, n) L^-T.
         v: (n,) joint velocities of the last state.
         tick: how often the rows were rewritten.
-        answer_size: of the array that `run` writes.
+        parts: of the array that `run` writes.
+        solved: whether the solver came to an end when it last ran.
     """
 
     def __init__(self, robot: Robot, hierarchy: Hierarchy) -> None:
@@ -73,7 +90,10 @@ class Stack:
                 m = term.where.stop
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
-        self.answer_size = 2 * robot.nv + m + len(self.levels)
+        n = robot.nv
+        ends = (n, 2 * n, 2 * n + m, 2 * n + m + len(self.levels))
+        self.parts = Parts(*map(slice, (0, *ends[:-1]), ends))
+        self.solved = False
         self._program: Program | None = None
         self._state: State | None = None
         self.tick = 0
@@ -144,16 +164,12 @@ class Stack:
         """
         self.run(state, ROWS_ONLY)
 
-    def run(self, state: State, out: Array) -> bool:
+    def run(self, state: State, out: Array) -> None:
         """Rewrite all rows and solve them with the connected solver, in one call.
 
         Args:
             state: the state.
-            out: (`answer_size`,) torques, accelerations, slacks and ranks of the levels
-                are written.
-
-        Returns:
-            whether the solver came to an end.
+            out: its `parts` are written.
 
         Raises:
             ModelError, SolverError: as for `update`, or a torque is not finite or
@@ -167,10 +183,9 @@ class Stack:
         if not self._python or self._prepare(state):
             table, run = self._table, self._runner
             outcome = run(table, state.q, state.v, state.t, state.dt, out)
-        solved = bool(outcome == slots.SOLVED)
-        if not solved and outcome != slots.UNSOLVED:
+        self.solved = outcome == slots.SOLVED
+        if not self.solved and outcome != slots.UNSOLVED:
             self._complain(outcome)
-        return solved
 
     def _prepare(self, state: State) -> bool:
         """What compiled code leaves to Python, unless a measurement is not finite."""
