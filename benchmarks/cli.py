@@ -64,7 +64,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         description="How fast are solver and tick, beside others in the same run?",
     )
     parser.add_argument(
-        "--quick", action="store_true", help="a few seconds, no figures"
+        "--quick", action="store_true", help="everything, short: no figures"
     )
     parser.add_argument("--only", choices=SECTIONS, help="one section")
     parser.add_argument(
