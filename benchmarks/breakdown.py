@@ -64,9 +64,10 @@ def _parts(loop: Loop) -> dict[str, Call]:
     try:
         state, stack = controller._state, controller._stack
         q, v, t = loop.q, loop.v, contender.t
+        found = np.empty(stack.parts.ranks.stop)
         return {
             "- pin: State.refresh": lambda: state.refresh(q, v, t),
-            "- compiled: rows, assembly, solver, torque": lambda: stack.resolve(state),
+            "- compiled: rows, solver, torque": lambda: stack.run(state, found),
         }
     except AttributeError:
         return {}

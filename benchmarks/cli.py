@@ -11,6 +11,7 @@ from pathlib import Path
 
 from benchmarks.alone import solver_tables
 from benchmarks.breakdown import breakdown_table
+from benchmarks.cells import cell_tables
 from benchmarks.endurance import endurance_table
 from benchmarks.environments import PEERS, NotAvailable, default_cache, prepare
 from benchmarks.growth import growth_table
@@ -30,8 +31,10 @@ Python call to Python return, garbage collector off; medians and 99th percentile
 A tick goes from (q, v) to the torques; moving the references is timed apart. Peers
 weigh pose and posture in one QP, whatever levels we have. "dynamics": tau against
 RNEA(q, v, dv). "saturated": ticks with a torque at its limit.
+Cells: what the controller saw in a simulated run under hqp is replayed through every
+resolver. "off record": torques against those of the run; hqp must repeat its own.
 """
-SECTIONS = ("solver", "tick", "growth", "start", "endurance")
+SECTIONS = ("solver", "tick", "cells", "growth", "start", "endurance")
 VARIANTS = ("nullspace:tsid", "nullspace:uf")
 """Resolvers that cost what "nullspace" does."""
 
@@ -61,7 +64,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         description="How fast are solver and tick, beside others in the same run?",
     )
     parser.add_argument(
-        "--quick", action="store_true", help="a few seconds, no figures"
+        "--quick", action="store_true", help="everything, short: no figures"
     )
     parser.add_argument("--only", choices=SECTIONS, help="one section")
     parser.add_argument(
@@ -113,6 +116,8 @@ def _sections(
         names = [name for name in resolver_names() if name not in VARIANTS]
         yield from tick_tables(ours, workers, names, quick, folder, summary)
         yield breakdown_table(quick, folder)
+    if "cells" in wanted:
+        yield from cell_tables(ours, quick, summary)
     if "growth" in wanted:
         yield growth_table(ours, quick, folder)
     if "start" in wanted:

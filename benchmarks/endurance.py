@@ -90,7 +90,8 @@ def endure(steps: Iterator[tuple[bool, float]], ticks: int) -> Endurance:
 
 def welding_ticks(ticks: int) -> Iterator[tuple[bool, float]]:
     """The cell's stacks in turn, on an ideal robot."""
-    loops = [open_loop(Job(name, cell=name), "hqp") for name in ("seam", "curve")]
+    cells = ("welding: seam", "welding: curve")
+    loops = [open_loop(Job(cell, cell=cell), "hqp") for cell in cells]
     starts = [loop.q.copy() for loop in loops]
     done = 0
     while done < ticks:

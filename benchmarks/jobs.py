@@ -18,7 +18,7 @@ class Job:
 
     Attributes:
         name: what the table calls it.
-        urdf: file of the model; empty for a stack of our welding cell.
+        urdf: file of the model; empty for a stack of one of our cells.
         tips: frames that follow a pose.
         home: (n,) start and posture [rad].
         acceleration: (n,) acceleration limits [rad/s^2].
@@ -31,7 +31,9 @@ class Job:
         stiffness: of pose and posture [1/s^2]; damping is critical.
         weights: of pose and posture, for those who have no levels.
         dt: control period [s].
-        cell: name of a job of the welding cell.
+        cell: name of a cell's stack (`benchmarks.stacks`).
+        recorded: with a cell, so many ticks of a run of it are replayed; 0 for its
+            stack on an ideal robot.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Job:
     weights: tuple[float, float] = (1.0, 1e-3)
     dt: float = 1e-3
     cell: str = ""
+    recorded: int = 0
 
     def to_json(self) -> str:
         """The job as a line of text."""

@@ -14,7 +14,7 @@ from benchmarks.pipes import Worker, WorkerError
 from benchmarks.summary import Summary
 from benchmarks.tables import late, median, micro, ratio, table
 
-__all__ = ["Entry", "arm_job", "race", "tick_tables"]
+__all__ = ["Entry", "arm_job", "race", "summarise", "tick_table", "tick_tables"]
 
 CHUNK = 300
 """Ticks that a worker runs before the next has its turn."""
@@ -73,14 +73,8 @@ def tick_tables(
         entries = [Entry(ours, name) for name in resolvers]
         entries += [Entry(peer, peer.name) for peer in peers]
         race(job, entries, ticks)
-        _summarise(job, entries, summary)
-        yield _table(job, entries)
-    cells = [Job(f"welding cell: {name}", cell=name) for name in ("seam", "curve")]
-    for job in cells[: 1 if quick else 2]:
-        entries = [Entry(ours, name) for name in resolvers]
-        race(job, entries, ticks)
-        _summarise(job, entries, summary)
-        yield _table(job, entries)
+        summarise(job, entries, summary)
+        yield tick_table(job, entries)
 
 
 def race(job: Job, entries: Sequence[Entry], ticks: int) -> None:
@@ -114,17 +108,19 @@ def _run(entry: Entry, key: int, count: int, drop: int) -> None:
     entry.aims += answer["aims"][drop:]
 
 
-def _summarise(job: Job, entries: Sequence[Entry], summary: Summary) -> None:
+def summarise(job: Job, entries: Sequence[Entry], summary: Summary) -> None:
     """Our default resolver against the peers."""
     times = {entry.kind: entry.ticks for entry in entries}
     summary.add(f"tick, {job.name}", times["hqp"], times)
 
 
-def _table(job: Job, entries: Sequence[Entry]) -> str:
+def tick_table(job: Job, entries: Sequence[Entry]) -> str:
+    """Times and checks of every contender."""
     peers = [e for e in entries if e.kind == e.worker.name]
     head = ["contender", "median us", "p99", "p99 / median"]
     head += [f"/ {peer.kind}" for peer in peers]
-    head += ["references us", "end error mm", "saturated", "dynamics Nm", "note"]
+    check = "off record Nm" if job.recorded else "dynamics Nm"
+    head += ["references us", "end error mm", "saturated", check, "note"]
     rows = []
     for entry in entries:
         report, middle = entry.report, median(entry.ticks)
@@ -139,7 +135,10 @@ def _table(job: Job, entries: Sequence[Entry]) -> str:
 
 
 def _checks(job: Job, entry: Entry, report: Mapping[str, Any]) -> list[str]:
-    """What the loop found: error of the tips, saturation, tau = RNEA(q, v, dv)."""
+    """What the loop found.
+
+    Error of the tips, saturation, and tau = RNEA(q, v, dv), or tau as recorded.
+    """
     if not report:
         return ["-", "-", "-", entry.failure]
     note = report["failure"]
@@ -151,7 +150,7 @@ def _checks(job: Job, entry: Entry, report: Mapping[str, Any]) -> list[str]:
     return [
         error,
         f"{100 * report['saturated']:.0f} %",
-        f"{report['dynamics_nm']:.0e}",
+        f"{report['off_record_nm' if job.recorded else 'dynamics_nm']:.0e}",
         note,
     ]
 

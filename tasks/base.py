@@ -8,7 +8,7 @@ import numpy as np
 
 from tasks.evaluator import SCRATCH, Code, evaluate, run
 from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
-from wbc.arrays import Array
+from wbc.arrays import Array, IntArray
 from wbc.compiled import python
 from wbc.frames import frame_at, frame_size
 from wbc.kernel import NO_TABLE, WORLD
@@ -42,6 +42,11 @@ class CatalogueTask(Settled, MotionTask):
         del robot
         return NO_TABLE
 
+    def joint_indices(self, robot: Robot) -> IntArray | None:
+        """For rows that are 1 at one joint and 0 elsewhere (m,): its index."""
+        del robot
+        return None
+
     def kernel(self, robot: Robot) -> Kernel | None:
         """The compiled half; None where the law is not one that is compiled."""
         if not isinstance(self.law, PD | Damper):
@@ -55,6 +60,7 @@ class CatalogueTask(Settled, MotionTask):
             self.table(robot),
             np.broadcast_to(stiffness, (m,)),
             np.broadcast_to(self.law.damping, (m,)),
+            self.joint_indices(robot),
             self.moving,
         )
 

@@ -11,12 +11,14 @@ from tasks.kernels.points import on_point
 from tasks.kernels.rotations import along, orientation, pose
 from wbc import slots
 from wbc.arrays import Array, IntArray
+from wbc.assembly import measured
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
 from wbc.pointers import floats_at, integers_at, matrix
 from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
 from wbc.tick import conclude
+from wbc.vectors import dot
 
 __all__ = ["SCRATCH", "Code", "evaluate", "run"]
 
@@ -99,6 +101,8 @@ def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) ->
     It is the runner of this catalogue's kernels; `wbc.tick` tells its arguments and
     what it returns.
     """
+    if not measured(q, v, t):
+        return slots.UNMEASURED
     n, m = table[slots.JOINTS], table[slots.ROWS]
     f, tasks, spare = table[slots.FRAMES], table[slots.TASKS], SCRATCH + 6 * n
     pointers = matrix(integers_at(table[slots.POINTERS], f * 6), f, 6)
@@ -171,8 +175,7 @@ def _write_rows(
         evaluate(code, p, table, F, q, v, t, dt, scratch[0], out)
         for i in range(begin, end):
             if gains[0, i] >= 0.0:
-                for j in range(n):
-                    bands[1, i] += A[i, j] * v[j]
+                bands[1, i] += dot(A[i], v, 0, n)
                 wish = gains[0, i] * bands[0, i] + gains[1, i] * bands[1, i]
                 bands[3, i] = bands[4, i] = -wish - bands[2, i]
 

@@ -63,7 +63,8 @@ class TorqueLimits(Settled, Task):
     def kernel(self, robot: Robot) -> Kernel:
         """The compiled half."""
         limit = self.fraction * robot.tau_max
-        return Kernel(run, int(Code.TORQUE_BOUNDS), limit)
+        joints = np.arange(limit.size)
+        return Kernel(run, int(Code.TORQUE_BOUNDS), limit, joints=joints)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
@@ -196,7 +197,8 @@ class JointLimits(Settled, Task):
         parameters = np.array([self.braking, float(self.integrator == "exact")])
         low, high = robot.q_min + self.margin, robot.q_max - self.margin
         table = np.concatenate([low, high, robot.v_max, robot.a_max])
-        return Kernel(run, int(Code.JOINT_BOUNDS), parameters, table)
+        joints = np.arange(low.size)
+        return Kernel(run, int(Code.JOINT_BOUNDS), parameters, table, joints=joints)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""

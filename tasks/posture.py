@@ -13,7 +13,7 @@ from tasks.base import CatalogueTask
 from tasks.evaluator import Code
 from tasks.locking import listed_joints
 from wbc import PD, Damper, Robot
-from wbc.arrays import Array, frozen, numbers
+from wbc.arrays import Array, IntArray, frozen, numbers
 from wbc.errors import InputError
 from wbc.kernel import NO_TABLE
 
@@ -108,6 +108,10 @@ class Posture(CatalogueTask):
         """Indices of the joints."""
         return np.array(_indices(robot, self.joints), dtype=np.float64)
 
+    def joint_indices(self, robot: Robot) -> IntArray:
+        """Of its rows."""
+        return np.array(_indices(robot, self.joints))
+
 
 @final
 class Damping(CatalogueTask):
@@ -152,6 +156,10 @@ class Damping(CatalogueTask):
     def table(self, robot: Robot) -> Array:
         """Indices of the joints."""
         return np.array(_indices(robot, self.joints), dtype=np.float64)
+
+    def joint_indices(self, robot: Robot) -> IntArray:
+        """Of its rows."""
+        return np.array(_indices(robot, self.joints))
 
 
 def _indices(robot: Robot, joints: tuple[str, ...] | None) -> list[int]:

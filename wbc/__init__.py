@@ -34,10 +34,11 @@ from wbc.law import PD, Damper, Law, SaturatedPD
 from wbc.nullspace import NullSpace
 from wbc.pose import PoseResult, TaskMiss, solve_pose
 from wbc.qp import backends
+from wbc.report import TaskReport
 from wbc.resolver import Resolver, Status
 from wbc.robot import Robot
 from wbc.rows import Rows, allocate_rows
-from wbc.solution import Solution, TaskReport
+from wbc.solution import Solution
 from wbc.state import State
 from wbc.task import MotionTask, Task
 from wbc.weighted import WeightedQP

@@ -27,6 +27,7 @@ BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int_]
 
 ROTATION_TOLERANCE = 1e-6
+"""Read by code that is compiled (`wbc.compiled`), too."""
 
 
 def numbers(value: Any, what: str) -> Array:

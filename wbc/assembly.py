@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from wbc.arrays import Array
+from wbc import slots
+from wbc.arrays import Array, IntArray
 from wbc.compiled import compiled, inner
+from wbc.inertia import factorise
+from wbc.pointers import floats_at, integers_at, matrix
+from wbc.vectors import add_scaled, finite, fours
 
-__all__ = [
-    "assemble", "back_substitute", "finite", "inverse_dynamics", "kept", "measured",
-]  # fmt: skip
+__all__ = ["assemble", "kept", "measured"]
 
 BEYOND, TINY = 1e-4, 1e-8
 """Shares of a torque's bound and of the largest torque; outside by more is no
@@ -22,120 +24,114 @@ def measured(q: Array, v: Array, t: float) -> bool:
     return bool(finite(q) and finite(v) and np.isfinite(t))
 
 
-@compiled
-def finite(x: Array) -> bool:
-    """Whether no number of x (n,) is NaN or infinite."""
-    good = True
-    for value in x:
-        good = good and np.isfinite(value)
-    return bool(good)
-
-
 @inner
-def assemble(
-    raw: Array,
-    bands: Array,
-    weights: Array,
-    torque: Array,
-    M: Array,
-    h: Array,
-    A: Array,
-    Ay: Array,
-    bounds: Array,
-    L_inv: Array,
-) -> int:
+def assemble(table: IntArray) -> int:
     """Weighted rows in vdot, and in y = L^T vdot with M = L L^T.
 
-    Torque rows become acceleration rows through tau = M vdot + h.
+    There vdot = U y with U = L^-T. Torque rows become acceleration rows through
+    tau = M vdot + h.
 
     Args:
-        raw: (m, n) rows as the tasks wrote them.
-        bands: (5, m) error, rate, drift, lower, upper, likewise.
-        weights: (m,) what each row is multiplied by.
-        torque: (m,) 1 for rows that bind tau, else 0.
-        M: (n, n) inertia.
-        h: (n,) Coriolis and gravity torques.
-        A: (m, n) is written.
-        Ay: (m, n) is written.
-        bounds: (2, m) lower and upper bounds are written.
-        L_inv: (n, n) inverse of the Cholesky factor is written.
+        table: of `wbc.slots`.
 
     Returns:
         -1 if all is well, -2 if the inertia is not positive definite, else the index of
         a row that is not finite (bounds may be infinite, but not NaN).
     """
-    m, n = A.shape
-    if not _invert_cholesky(M, L_inv):
+    n, m = table[slots.JOINTS], table[slots.ROWS]
+    M = matrix(floats_at(table[slots.INERTIA], n * n), n, n)
+    h = floats_at(table[slots.BIAS], n)
+    L = matrix(floats_at(table[slots.FACTOR], n * n), n, n)
+    U = matrix(floats_at(table[slots.INVERSE], n * n), n, n)
+    if not factorise(M, L, U):
         return -2
+    raw = matrix(floats_at(table[slots.RAW], m * n), m, n)
+    bands = matrix(floats_at(table[slots.BANDS], 5 * m), 5, m)
+    weights = floats_at(table[slots.WEIGHTS], m)
+    torque = floats_at(table[slots.TORQUE], m)
+    joint = integers_at(table[slots.JOINT], m)
+    A = matrix(floats_at(table[slots.VDOT_ROWS], m * n), m, n)
+    numbers = floats_at(table[slots.Y_ROWS], m * n)
+    Ay = matrix(numbers, m, n)
+    bounds = matrix(floats_at(table[slots.BOUNDS], 2 * m), 2, m)
     for i in range(m):
-        bias, weight = 0.0, weights[i]
+        weight, bias = weights[i], 0.0
         if torque[i] == 0.0:
-            for j in range(n):
-                A[i, j] = weight * raw[i, j]
+            _motion_row(weight, raw[i], joint[i], U, A[i], Ay[i])
         else:
-            A[i] = 0.0
-            for k in range(n):
-                if raw[i, k] != 0.0:
-                    bias += raw[i, k] * h[k]
-                    for j in range(n):
-                        A[i, j] += weight * raw[i, k] * M[j, k]
+            bias = _torque_row(weight, raw[i], joint[i], M, h, L, A[i], Ay[i])
         bounds[0, i] = weight * (bands[3, i] - bias)
         bounds[1, i] = weight * (bands[4, i] - bias)
-        for j in range(n):
-            total = 0.0
-            for k in range(j + 1):
-                total += A[i, k] * L_inv[j, k]
-            Ay[i, j] = total
-        if not finite(Ay[i]) or np.isnan(bounds[0, i]) or np.isnan(bounds[1, i]):
-            return i
-    return -1
+    if finite(numbers) and not _any_nan(bounds):
+        return -1
+    return _first_bad(Ay, bounds)
 
 
 @inner
-def _invert_cholesky(M: Array, L_inv: Array) -> bool:
-    """Inverse of L with M = L L^T, lower triangular; False if there is no such L."""
-    n = M.shape[0]
-    L = L_inv  # the factor first, then its inverse, in the same memory
-    for j in range(n):
-        for i in range(j, n):
-            total = M[i, j]
-            for k in range(j):
-                total -= L[i, k] * L[j, k]
-            if i > j:
-                L[i, j] = total / L[j, j]
-            elif total > 0.0:
-                L[j, j] = np.sqrt(total)
-            else:
-                return False
-    for j in range(n):
-        L[j, j] = 1.0 / L[j, j]
-        for i in range(j + 1, n):
-            total = 0.0
-            for k in range(j, i):
-                total -= L[i, k] * L_inv[k, j]
-            L_inv[i, j] = total / L[i, i]
-    return True
+def _motion_row(
+    weight: float, raw: Array, joint: int, U: Array, a: Array, ay: Array
+) -> None:
+    """A row (n,) on vdot; on y it is a U.
+
+    Of a row about one joint, what never changes is 0 already.
+    """
+    n = raw.size
+    if joint >= 0:
+        a[joint] = weight
+        for j in range(joint, n):
+            ay[j] = weight * U[joint, j]
+        return
+    ay[:] = 0.0
+    for k in range(n):
+        a[k] = weight * raw[k]
+        if a[k] != 0.0:
+            add_scaled(a[k], U[k], ay, fours(k), n)
 
 
-@compiled
-def back_substitute(L_inv: Array, y: Array, vdot: Array) -> None:
-    """Vdot = L^-T y, into vdot (n,)."""
-    n = y.size
-    for i in range(n):
-        vdot[i] = 0.0
-        for j in range(i, n):
-            vdot[i] += L_inv[j, i] * y[j]
-
-
-@compiled
-def inverse_dynamics(M: Array, h: Array, vdot: Array, tau: Array) -> bool:
-    """Tau = M vdot + h, into tau (n,); whether it is finite."""
-    n = vdot.size
-    for i in range(n):
-        tau[i] = h[i]
+@inner
+def _torque_row(
+    weight: float,
+    raw: Array,
+    joint: int,
+    M: Array,
+    h: Array,
+    L: Array,
+    a: Array,
+    ay: Array,
+) -> float:
+    """A row (n,) on M vdot + h; on y it is raw L. Returns raw h."""
+    n, bias = raw.size, 0.0
+    if joint >= 0:
         for j in range(n):
-            tau[i] += M[i, j] * vdot[j]
-    return finite(tau)
+            a[j] = weight * M[joint, j]
+        for j in range(joint + 1):
+            ay[j] = weight * L[joint, j]
+        return float(h[joint])
+    a[:] = 0.0
+    ay[:] = 0.0
+    for k in range(n):
+        if raw[k] != 0.0:
+            bias += raw[k] * h[k]
+            add_scaled(weight * raw[k], M[k], a, 0, n)
+            add_scaled(weight * raw[k], L[k], ay, 0, k + 1)
+    return bias
+
+
+@inner
+def _any_nan(bounds: Array) -> bool:
+    found = False
+    for i in range(bounds.shape[1]):
+        found |= np.isnan(bounds[0, i]) | np.isnan(bounds[1, i])
+    return bool(found)
+
+
+@inner
+def _first_bad(Ay: Array, bounds: Array) -> int:
+    """Index of the first row that is not finite."""
+    for i in range(Ay.shape[0]):
+        if not finite(Ay[i]) or np.isnan(bounds[0, i]) or np.isnan(bounds[1, i]):
+            return i
+    return -1
 
 
 @compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wbc.arrays import Array, BoolArray
 from wbc.compiled import compiled
-from wbc.lexicographic.vectors import dot
+from wbc.vectors import dot
 
 __all__ = ["at_bounds"]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.arrays import Array, positive
-from wbc.assembly import finite, measured
+from wbc.assembly import measured
 from wbc.checks import expect
 from wbc.errors import InputError, ModelError, SolverError, shown
 from wbc.hierarchy import Hierarchy, Level
@@ -20,9 +20,12 @@ from wbc.solution import Solution
 from wbc.state import State
 from wbc.task import Task
 from wbc.transition import Bound, Transition
+from wbc.vectors import finite
 
 __all__ = ["Controller", "resolve"]
 
+FLOAT = np.dtype(np.float64)
+NOT_FINITE = "a measurement is not finite"
 FALLBACK_DAMPING = 10.0
 """Rate [1/s] at which the fallback damps joint velocities."""
 
@@ -90,8 +93,7 @@ class Controller:
         """
         forces = self._no_wrench
         try:
-            q, v = np.array(q, dtype=np.float64), np.array(v, dtype=np.float64)
-            t = float(t)
+            q, v, t = np.array(q, FLOAT), np.array(v, FLOAT), float(t)
             if wrenches:
                 forces = {k: _wrench(k, w) for k, w in wrenches.items()}
         except (TypeError, ValueError, OverflowError, AttributeError) as error:
@@ -100,10 +102,8 @@ class Controller:
             raise InputError(
                 f"q and v have shapes {q.shape}, {v.shape}; need {self._shape}."
             )
-        if not self._finite(q, v, t, forces):
-            return self._hold(
-                q, v, Status.SENSOR_INVALID, "a measurement is not finite"
-            )
+        if wrenches and not all(finite(w) for w in forces.values()):
+            return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
         return self._tick(q, v, t, forces)
 
     def change(
@@ -154,19 +154,20 @@ class Controller:
     def _tick(
         self, q: Array, v: Array, t: float, wrenches: Mapping[str, Array]
     ) -> Solution:
-        self._last = q
         self._state.refresh(q, v, t, wrenches)
         try:
             if self._transition is None:
-                torque, answer = self._bound.tick(self._state)
+                torque, answer, status = self._bound.tick(self._state)
             else:
                 torque, answer = self._pass_on(self._transition)
+                status = answer.status
         except (SolverError, ModelError, np.linalg.LinAlgError) as error:
+            if not measured(q, v, t):
+                return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
             return self._hold(q, v, Status.SOLVER_FAILED, str(error))
-        self._state.commanded = torque
-        return Solution(
-            self._stack, torque, answer, answer.status, "", self._transition
-        )
+        self._last, self._state.commanded = q, torque
+        change = self._transition
+        return Solution(self._stack, torque, answer, status, "", change)
 
     def _pass_on(self, transition: Transition) -> tuple[Array, Answer]:
         """A tick of a change: torques, and what they come from."""
@@ -175,11 +176,6 @@ class Controller:
         if transition.finished:
             self._transition = None
         return torque, answer
-
-    @staticmethod
-    def _finite(q: Array, v: Array, t: float, wrenches: Mapping[str, Array]) -> bool:
-        good = measured(q, v, t)
-        return good and (not wrenches or all(finite(w) for w in wrenches.values()))
 
     def _hold(self, q: Array, v: Array, status: Status, message: str) -> Solution:
         """Gravity compensation and damping within the torque limits.
@@ -245,5 +241,4 @@ def resolve(
     expect(State, state=state)
     resolver = HierarchicalQP() if resolver is None else resolver
     bound = Bound(state.robot, Hierarchy.of(hierarchy), resolver)
-    torque, answer = bound.tick(state)
-    return Solution(bound.stack, torque, answer, answer.status)
+    return Solution(bound.stack, *bound.tick(state))

@@ -57,22 +57,15 @@ class _Compiled(Solver):
 
     def __init__(self, stack: Stack) -> None:
         sizes = [where.stop - where.start for where in stack.levels]
-        n, m = stack.robot.nv, stack.lower.size
-        self._stack, self._solver = stack, Lexicographic(sizes, n)
-        self._torque, self._vdot = slice(n), slice(n, 2 * n)
-        self._slack, self._ranks = slice(2 * n, 2 * n + m), slice(2 * n + m, None)
+        self._stack, self._solver = stack, Lexicographic(sizes, stack.robot.nv)
+        self._size = stack.parts.ranks.stop
         stack.connect(self._solver.address)
 
-    def tick(self, stack: Stack, state: State) -> Answer:
+    def tick(self, stack: Stack, state: State) -> Array:
         """The same in one compiled call."""
-        found, done = stack.resolve(state)
-        return Answer(
-            found[self._vdot],
-            found[self._ranks],
-            SOLVED if done else INCOMPLETE,
-            found[self._slack],
-            found[self._torque],
-        )
+        found = np.empty(self._size)
+        stack.run(state, found)
+        return found
 
     def solve(self) -> Answer:
         """Resolve the present rows."""

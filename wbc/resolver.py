@@ -10,7 +10,7 @@ from wbc.arrays import Array, IntArray
 from wbc.stack import Stack
 from wbc.state import State
 
-__all__ = ["Answer", "Resolver", "Solver", "Status"]
+__all__ = ["Answer", "Resolver", "Solver", "Status", "unpack"]
 
 
 class Status(Enum):
@@ -48,6 +48,15 @@ class Answer(NamedTuple):
     kinetic: bool = True
 
 
+def unpack(found: Answer | Array, stack: Stack, status: Status) -> Answer:
+    """An answer, cut out of the array that `Stack.run` wrote if it is one."""
+    if isinstance(found, Answer):
+        return found
+    where = stack.parts
+    torque, slacks = found[where.torque], found[where.slacks]
+    return Answer(found[where.vdot], found[where.ranks], status, slacks, torque)
+
+
 class Solver(ABC):
     """A resolver at work on one stack; may keep a warm start between ticks."""
 
@@ -59,8 +68,11 @@ class Solver(ABC):
             SolverError: no solution was found.
         """
 
-    def tick(self, stack: Stack, state: State) -> Answer:
+    def tick(self, stack: Stack, state: State) -> Answer | Array:
         """Rewrite the stack's rows at this state, and resolve them.
+
+        Returns:
+            the answer, or the array that `Stack.run` wrote.
 
         Raises:
             ModelError, SolverError: as for `Stack.update` and `solve`.

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.assembly import finite
 from wbc.damped import DampedInverse
 from wbc.errors import SolverError
 from wbc.lexicographic import Lexicographic
 from wbc.projection import Projection
 from wbc.resolver import Answer, Solver, Status
 from wbc.stack import Stack
+from wbc.vectors import finite
 
 __all__ = ["Saturation"]
 
@@ -77,4 +77,4 @@ class Saturation(Solver):
         """What y would be if all motion were to die out at the rate of the damping."""
         stack = self._stack
         rest: Array = -damping.rate * stack.v
-        return np.array(np.linalg.solve(stack.L_inv.T, rest)) if self._kinetic else rest
+        return stack.coordinates(rest) if self._kinetic else rest

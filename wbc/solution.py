@@ -4,48 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
 import numpy as np
 
-from wbc.arrays import Array, IntArray
-from wbc.bounds import at_bounds
-from wbc.certificate import AT_BOUND, Certificate, certify, slack_of
+from wbc.arrays import Array
+from wbc.certificate import Certificate, certify
 from wbc.checks import known
 from wbc.errors import StaleError
 from wbc.explain import Explanation, StrictnessCost, explain, strictness_cost
-from wbc.resolver import Answer, Status
-from wbc.stack import Stack, Term
+from wbc.report import TaskReport, active_rows, shortfalls, task_report
+from wbc.resolver import Answer, Status, unpack
+from wbc.stack import Stack
 from wbc.task import MotionTask
 
 if TYPE_CHECKING:
     from wbc.transition import Transition
 
-__all__ = ["Solution", "TaskReport"]
-
-
-@final
-@dataclass(frozen=True, slots=True, eq=False)
-class TaskReport:
-    """How one task fared in a tick.
-
-    Attributes:
-        name: of the task.
-        level: from 1 at the top.
-        unit: of its error.
-        error: (m,) in that unit, NaN for inequality tasks.
-        residual: (m,) what of the wanted acceleration (or torque) was not delivered,
-            in the task's own, unweighted rows.
-        active: names of its rows that sit at a bound or beyond it.
-    """
-
-    name: str
-    level: int
-    unit: str
-    error: Array
-    residual: Array
-    active: tuple[str, ...]
+__all__ = ["Solution"]
 
 
 @final
@@ -57,38 +33,41 @@ class Solution:
 
     Attributes:
         torque: (n,) joint torques [Nm or N], always finite.
-        acceleration: (n,) joint accelerations that they cause in the model, NaN
-            after a fallback.
         status: how the tick ended.
         message: what went wrong, empty if nothing did.
     """
 
     __slots__ = (
-        "_kinetic", "_ramp", "_ranks", "_slacks", "_stack", "_tick", "acceleration",
-        "message", "status", "torque",
+        "_found", "_ramp", "_stack", "_tick", "message", "status", "torque",
     )  # fmt: skip
 
     def __init__(
         self,
         stack: Stack,
         torque: Array,
-        answer: Answer | None,
+        answer: Answer | Array | None,
         status: Status,
         message: str = "",
         transition: Transition | None = None,
     ) -> None:
-        self._stack, self._tick = stack, stack.tick
+        self._stack, self._tick, self._found = stack, stack.tick, answer
         self.torque, self.status, self.message = torque, status, message
         self._ramp = None if transition is None else (transition, transition.share)
-        self._ranks: Array | IntArray | None = None
-        self._slacks: Array | None = None
-        self._kinetic = True
-        if answer is None:
-            self.acceleration = np.full(torque.size, np.nan)
-        else:
-            self.acceleration = answer.vdot
-            self._ranks, self._slacks = answer.ranks, answer.slacks
-            self._kinetic = answer.kinetic
+
+    @property
+    def acceleration(self) -> Array:
+        """(n,) joint accelerations that the torques cause in the model.
+
+        NaN after a fallback.
+        """
+        answer = self._answer
+        return np.full(self.torque.size, np.nan) if answer is None else answer.vdot
+
+    @property
+    def _answer(self) -> Answer | None:
+        """What the resolver said, None after a fallback."""
+        found = self._found
+        return None if found is None else unpack(found, self._stack, self.status)
 
     @property
     def ok(self) -> bool:
@@ -110,7 +89,8 @@ class Solution:
 
         Empty after a fallback.
         """
-        return () if self._ranks is None else tuple(map(int, self._ranks.tolist()))
+        answer = self._answer
+        return () if answer is None else tuple(map(int, answer.ranks.tolist()))
 
     @property
     def lost(self) -> tuple[int, ...]:
@@ -138,18 +118,18 @@ class Solution:
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
         """
-        return self._certify(self._kinetic)
+        answer = self._answer
+        return self._certify(answer is None or answer.kinetic)
 
     def _certify(self, kinetic: bool) -> Certificate:
         stack = self._fresh()
         where = stack.levels
         A = stack.Ay if kinetic else stack.A
         levels = [(A[k], stack.lower[k], stack.upper[k]) for k in where]
-        then = None if self._slacks is None else [self._slacks[k] for k in where]
-        x = self.acceleration
-        return certify(
-            levels, np.linalg.solve(stack.L_inv.T, x) if kinetic else x, then
-        )
+        answer, x = self._answer, self.acceleration
+        slacks = None if answer is None else answer.slacks
+        then = None if slacks is None else [slacks[k] for k in where]
+        return certify(levels, stack.coordinates(x) if kinetic else x, then)
 
     def level_rows(self) -> list[tuple[Array, Array, Array]]:
         """Copies of the rows that were resolved: (A (m, n), lower (m,), upper (m,)).
@@ -174,12 +154,15 @@ class Solution:
         """
         stack = self._fresh()
         found = {term.task.name: term for term in stack.terms}
-        return self._report(stack, found[known("task", task, found)])
+        term = found[known("task", task, found)]
+        return task_report(stack, term, self.acceleration)
 
     def reports(self) -> tuple[TaskReport, ...]:
         """How all tasks fared, from the top level down."""
         stack = self._fresh()
-        return tuple(self._report(stack, term) for term in stack.terms)
+        return tuple(
+            task_report(stack, term, self.acceleration) for term in stack.terms
+        )
 
     def explain(self) -> Explanation:
         """Which tasks are met, what blocks the others, and at what price; print it.
@@ -213,16 +196,7 @@ class Solution:
 
     def active_rows(self) -> list[str]:
         """Inequality rows at a bound or beyond it, as "level k: task: row"."""
-        stack = self._fresh()
-        at = np.empty(stack.lower.size, dtype=np.bool_)
-        if not at_bounds(stack.A, self.acceleration, stack.lower, stack.upper, at):
-            return []
-        return [
-            f"level {term.level + 1}: {term.task.name}: {name}"
-            for term in stack.terms
-            for name, active in zip(term.names, at[term.where], strict=True)
-            if active
-        ]
+        return active_rows(self._fresh(), self.acceleration)
 
     def shortfalls(self) -> list[tuple[int, str, float]]:
         """Level, name and relative shortfall of every task, cheap enough for a log.
@@ -230,35 +204,7 @@ class Solution:
         |missing| / |wanted| of the weighted rows, at most 1, and 0 where a task is met
         up to round-off. Of inequalities the broken rows alone count.
         """
-        stack, vdot = self._fresh(), self.acceleration
-        value = stack.A @ vdot
-        wanted = np.clip(value, stack.lower, stack.upper)
-        missing = wanted - value
-        length = np.sqrt(np.einsum("mn,mn->m", stack.A, stack.A))
-        near = AT_BOUND * (length * (1.0 + math.sqrt(vdot @ vdot)) + np.abs(value))
-        missing[np.abs(missing) <= near] = 0.0
-        wanted[(stack.lower < stack.upper) & (missing == 0.0)] = 0.0
-        found = []
-        for term in stack.terms:
-            lack, wish = missing[term.where], wanted[term.where]
-            share = _share(math.sqrt(lack @ lack), math.sqrt(wish @ wish))
-            found.append((term.level + 1, term.task.name, share))
-        return found
-
-    def _report(self, stack: Stack, term: Term) -> TaskReport:
-        where = term.where
-        A, lower, upper = stack.A[where], stack.lower[where], stack.upper[where]
-        slack = slack_of(A, self.acceleration, lower, upper)
-        at = np.empty(lower.size, dtype=np.bool_)
-        at_bounds(A, self.acceleration, lower, upper, at)
-        return TaskReport(
-            name=term.task.name,
-            level=term.level + 1,
-            unit=term.task.unit,
-            error=np.where(lower < upper, np.nan, term.rows.error),
-            residual=slack / term.weight,
-            active=tuple(n for n, a in zip(term.names, at, strict=True) if a),
-        )
+        return shortfalls(self._fresh(), self.acceleration)
 
     def _fresh(self) -> Stack:
         if self._stack.tick != self._tick:
@@ -276,8 +222,3 @@ class Solution:
     def __repr__(self) -> str:
         torque = np.array2string(self.torque, precision=3, suppress_small=True)
         return f"Solution({self.status.name}, torque={torque}, ranks={self.ranks})"
-
-
-def _share(part: float, whole: float) -> float:
-    """Part / whole, 1 where the part is as large or larger."""
-    return 0.0 if part == 0.0 else 1.0 if part >= whole else part / whole

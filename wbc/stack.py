@@ -2,62 +2,46 @@
 
 from __future__ import annotations
 
-from typing import NoReturn, final
+from typing import NamedTuple, NoReturn, final
 
 import numpy as np
 
 from wbc import slots
 from wbc.arrays import Array
-from wbc.assembly import back_substitute, inverse_dynamics, kept
+from wbc.assembly import kept, measured
 from wbc.binding import register
 from wbc.compiled import announce
 from wbc.errors import InputError, ModelError, SolverError
 from wbc.hierarchy import Hierarchy
-from wbc.kernel import Kernel
+from wbc.inertia import back_substitute, inverse_dynamics
 from wbc.pointers import address_of
 from wbc.program import Place, Program
 from wbc.robot import Robot
-from wbc.rows import Rows, rows_over
+from wbc.rows import rows_over
 from wbc.state import State
 from wbc.task import Task
+from wbc.term import Term
 from wbc.tick import without_kernels
 
-__all__ = ["Stack", "Term"]
+__all__ = ["Parts", "Stack"]
 
 ROWS_ONLY = np.empty(0)
 
 
-@final
-class Term:
-    """One task's place in a stack.
+class Parts(NamedTuple):
+    """Where things lie in the one array that a compiled tick writes.
 
     Attributes:
-        task: the task.
-        weight: what its residual is multiplied by.
-        level: index of its level, 0 at the top.
-        where: slice of its rows in the stacked arrays.
-        rows: what the task writes: views of the stack's `raw` and `bands`.
-        names: one name a row.
-        kernel: its compiled half, None for a task in plain Python.
+        torque: (n,) joint torques.
+        vdot: (n,) joint accelerations.
+        slacks: (m,) weighted slack of every row when its own level was solved.
+        ranks: (p,) for each level, how many independent directions it could use.
     """
 
-    __slots__ = ("kernel", "level", "names", "rows", "task", "weight", "where")
-
-    rows: Rows
-    kernel: Kernel | None
-
-    def __init__(
-        self, task: Task, weight: float, level: int, start: int, robot: Robot
-    ) -> None:
-        task.check(robot)
-        self.task, self.weight, self.level = task, weight, level
-        self.names = task.row_names(robot)
-        self.where = slice(start, start + len(self.names))
-        self.read(robot)
-
-    def read(self, robot: Robot) -> None:
-        """Read gains and settings of the task."""
-        self.kernel = self.task.kernel(robot) if self.names else None
+    torque: slice
+    vdot: slice
+    slacks: slice
+    ranks: slice
 
 
 @final
@@ -85,9 +69,12 @@ class Stack:
         terms: the tasks and their places.
         M, h: inertia (n, n) and bias torques (n,) of the last state; h includes
             torques of the contact forces that tasks count on.
-        L_inv: (n, n) inverse of the Cholesky factor of M.
+        L: (n, n) Cholesky factor of M.
+        U: (n, n) L^-T.
         v: (n,) joint velocities of the last state.
         tick: how often the rows were rewritten.
+        parts: of the array that `run` writes.
+        solved: whether the solver came to an end when it last ran.
     """
 
     def __init__(self, robot: Robot, hierarchy: Hierarchy) -> None:
@@ -103,7 +90,10 @@ class Stack:
                 m = term.where.stop
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
-        self._answer_size = 2 * robot.nv + m + len(self.levels)
+        n = robot.nv
+        ends = (n, 2 * n, 2 * n + m, 2 * n + m + len(self.levels))
+        self.parts = Parts(*map(slice, (0, *ends[:-1]), ends))
+        self.solved = False
         self._program: Program | None = None
         self._state: State | None = None
         self.tick = 0
@@ -112,9 +102,10 @@ class Stack:
 
     def _sort_out(self) -> None:
         """Tell tasks in plain Python, and those with a memory, from the others."""
-        self._python = [term for term in self.terms if term.kernel is None]
+        self._plain = [term for term in self.terms if term.kernel is None]
         everyone = [term.task for term in self.terms]
         self._advancing = [t for t in everyone if type(t).advance is not Task.advance]
+        self._python = bool(self._plain or self._advancing)
 
     def read_afresh(self) -> None:
         """Read gains and settings of the tasks again, at the next update."""
@@ -131,9 +122,11 @@ class Stack:
             np.zeros((2, m)),
         )
         self.lower, self.upper = self._bounds
-        self.M, self.h, self.L_inv = np.eye(n), np.zeros(n), np.eye(n)
+        self.M, self.h = np.eye(n), np.zeros(n)
+        self.L, self.U = np.eye(n), np.eye(n)
         self._M, self.v = self.M, np.zeros(n)
         self.weights, self._torque = np.ones(m), np.zeros(m)
+        self._joint = np.full(m, -1)
         for term in self.terms:
             where = term.where
             term.rows = rows_over(self.raw[where], self.bands[:, where])
@@ -145,61 +138,64 @@ class Stack:
             address_of(array)
             for array in (self.raw, self.bands, self.weights, self._torque)
         ]
-        self._table[slots.VDOT_ROWS : slots.L_INV + 1] = [
-            address_of(array) for array in (self.A, self.Ay, self._bounds, self.L_inv)
+        self._table[slots.VDOT_ROWS : slots.INVERSE + 1] = [
+            address_of(array)
+            for array in (self.A, self.Ay, self._bounds, self.L, self.U)
         ]
+        self._table[slots.JOINT] = address_of(self._joint)
         on_top = [term for term in self.terms if term.level == 0]
         if len(on_top) == 1 and on_top[0].task.space == "torque":
             self._table[slots.GUARDED] = on_top[0].where.stop
 
-    def update(self, state: State) -> None:
-        """Rewrite all rows at this state.
-
-        Raises:
-            ModelError: the inertia matrix is not positive definite.
-            SolverError: a task wrote a row that is not finite.
-        """
-        outcome = self._run(state, ROWS_ONLY)
-        if outcome != slots.SOLVED:
-            self._complain(outcome)
-
     def connect(self, solver: int) -> None:
-        """Let `resolve` use a compiled solver, which must stay alive.
+        """Let `run` use a compiled solver, which must stay alive.
 
         Args:
             solver: address of its memory.
         """
         self._table[slots.SOLVER] = solver
 
-    def resolve(self, state: State) -> tuple[Array, bool]:
+    def update(self, state: State) -> None:
+        """Rewrite all rows at this state.
+
+        Raises:
+            ModelError: the inertia matrix is not positive definite.
+            SolverError: a measurement, or a row that a task wrote, is not finite.
+        """
+        self.run(state, ROWS_ONLY)
+
+    def run(self, state: State, out: Array) -> None:
         """Rewrite all rows and solve them with the connected solver, in one call.
 
-        Returns:
-            (2 n + m + p,) torques, accelerations, slacks and ranks of the levels; and
-            whether the solver came to an end.
+        Args:
+            state: the state.
+            out: its `parts` are written.
 
         Raises:
             ModelError, SolverError: as for `update`, or a torque is not finite or
                 breaks limits that stand alone on top.
         """
-        out = np.empty(self._answer_size)
-        outcome = self._run(state, out)
-        if outcome == slots.SOLVED:
-            return out, True
-        if outcome != slots.UNSOLVED:
-            self._complain(outcome)
-        return out, False
-
-    def _run(self, state: State, out: Array) -> int:
         self.v = state.v
         if state is not self._state:
             self._bind(state)
         self.tick += 1
-        for term in self._python:
+        outcome = slots.UNMEASURED
+        if not self._python or self._prepare(state):
+            table, run = self._table, self._runner
+            outcome = run(table, state.q, state.v, state.t, state.dt, out)
+        self.solved = outcome == slots.SOLVED
+        if not self.solved and outcome != slots.UNSOLVED:
+            self._complain(outcome)
+
+    def _prepare(self, state: State) -> bool:
+        """What compiled code leaves to Python, unless a measurement is not finite."""
+        if not measured(state.q, state.v, state.t):
+            return False
+        for term in self._plain:
             term.task.update(state, term.rows)
         if self._advancing:
             self._advance(state)
-        return self._runner(self._table, state.q, state.v, state.t, state.dt, out)
+        return True
 
     def _advance(self, state: State) -> None:
         """Let tasks with a memory move on, and add their contact torques to h."""
@@ -217,6 +213,8 @@ class Stack:
                     f"task '{term.task.name}' wrote a row '{row}' that is not finite.",
                     term.level,
                 )
+        if outcome == slots.UNMEASURED:
+            raise SolverError("a position, a velocity or the time is not finite.")
         if outcome == slots.NOT_FINITE:
             raise SolverError("a torque is not finite.")
         if outcome == slots.BEYOND:
@@ -242,6 +240,10 @@ class Stack:
             for term in self.terms
             if term.kernel is not None
         ]
+        self._joint[:], self.A[:], self.Ay[:] = -1, 0.0, 0.0
+        for term in self.terms:
+            if term.kernel is not None and term.kernel.joints is not None:
+                self._joint[term.where] = term.kernel.joints
         table, self._runner = self._table, without_kernels
         table[slots.INERTIA : slots.BIAS + 1] = address_of(state.M), address_of(self.h)
         if places:
@@ -253,8 +255,12 @@ class Stack:
     def acceleration(self, y: Array) -> Array:
         """Vdot = L^-T y, (n,)."""
         vdot = np.empty(y.size)
-        back_substitute(self.L_inv, y, vdot)
+        back_substitute(self.U, y, vdot)
         return vdot
+
+    def coordinates(self, vdot: Array) -> Array:
+        """Y = L^T vdot, (n,)."""
+        return np.asarray(self.L.T @ vdot)
 
     def torque(self, vdot: Array) -> Array:
         """Tau = M vdot + h, (n,) [Nm].

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from wbc import slots
 from wbc.arrays import Array, IntArray
-from wbc.assembly import assemble, back_substitute, inverse_dynamics, kept
+from wbc.assembly import assemble, kept, measured
 from wbc.compiled import compiled, inner
+from wbc.inertia import back_substitute, inverse_dynamics
 from wbc.lexicographic.solver import lexicographic
 from wbc.lexicographic.work import work_at
 from wbc.pointers import floats_at, matrix
@@ -28,26 +29,15 @@ def conclude(table: IntArray, out: Array) -> int:
     n, m = table[slots.JOINTS], table[slots.ROWS]
     M = matrix(floats_at(table[slots.INERTIA], n * n), n, n)
     h = floats_at(table[slots.BIAS], n)
-    L_inv = matrix(floats_at(table[slots.L_INV], n * n), n, n)
+    U = matrix(floats_at(table[slots.INVERSE], n * n), n, n)
     Ay = matrix(floats_at(table[slots.Y_ROWS], m * n), m, n)
     bounds = matrix(floats_at(table[slots.BOUNDS], 2 * m), 2, m)
-    outcome = assemble(
-        matrix(floats_at(table[slots.RAW], m * n), m, n),
-        matrix(floats_at(table[slots.BANDS], 5 * m), 5, m),
-        floats_at(table[slots.WEIGHTS], m),
-        floats_at(table[slots.TORQUE], m),
-        M,
-        h,
-        matrix(floats_at(table[slots.VDOT_ROWS], m * n), m, n),
-        Ay,
-        bounds,
-        L_inv,
-    )
+    outcome = assemble(table)
     if outcome != slots.SOLVED or out.size == 0:
         return int(outcome)
     sweeps = lexicographic(Ay, bounds[0], bounds[1], table[slots.SOLVER])
     w, vdot = work_at(table[slots.SOLVER]), out[n : 2 * n]
-    back_substitute(L_inv, w.x, vdot)
+    back_substitute(U, w.x, vdot)
     for i in range(m):
         out[2 * n + i] = w.slack[i]
     for k in range(w.count.size):
@@ -66,4 +56,6 @@ def without_kernels(
     table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array
 ) -> int:
     """The tick of a stack whose tasks are all plain Python."""
+    if not measured(q, v, t):
+        return slots.UNMEASURED
     return conclude(table, out)

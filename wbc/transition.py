@@ -20,7 +20,7 @@ import numpy as np
 from wbc.arrays import Array
 from wbc.errors import InputError, SolverError, shown
 from wbc.hierarchy import Hierarchy
-from wbc.resolver import Answer, Resolver, Status
+from wbc.resolver import Answer, Resolver, Status, unpack
 from wbc.robot import Robot
 from wbc.stack import Stack
 from wbc.state import State
@@ -55,15 +55,25 @@ class Bound:
         self.stack = Stack(robot, hierarchy)
         self.solver = resolver.start(self.stack)
 
-    def tick(self, state: State) -> tuple[Array, Answer]:
-        """Torques (n,) at a state, and what they come from.
+    def tick(self, state: State) -> tuple[Array, Answer | Array, Status]:
+        """Torques (n,) at a state, what they come from (to unpack), and how it ended.
 
         Raises:
             ModelError, SolverError: as for `Solver.tick`, or a torque is not finite.
         """
-        answer = self.solver.tick(self.stack, state)
-        torque = answer.torque
-        return (self.stack.torque(answer.vdot) if torque is None else torque), answer
+        stack = self.stack
+        found = self.solver.tick(stack, state)
+        if isinstance(found, Answer):
+            given = found.torque
+            torque = stack.torque(found.vdot) if given is None else given
+            return torque, found, found.status
+        status = Status.SOLVED if stack.solved else Status.INCOMPLETE
+        return found[stack.parts.torque], found, status
+
+    def answer(self, state: State) -> tuple[Array, Answer]:
+        """The same, unpacked."""
+        torque, found, status = self.tick(state)
+        return torque, unpack(found, self.stack, status)
 
 
 @dataclass(slots=True, eq=False)
@@ -154,10 +164,10 @@ class Transition:
         if self._waiting is not None and len(self._live) < MOST:
             self._live.append(self._waiting)
             self._waiting = None
-        found = [self.newest.tick(state)]  # first, for it alone may fail the tick
+        found = [self.newest.answer(state)]  # first, for it alone may fail the tick
         for ramp in self._live[-2::-1]:
             try:
-                found.insert(0, ramp.bound.tick(state))
+                found.insert(0, ramp.bound.answer(state))
             except (SolverError, np.linalg.LinAlgError):
                 self._live.remove(ramp)
         blended = self._blend(found)
@@ -168,7 +178,7 @@ class Transition:
 
     def _blend(self, found: list[tuple[Array, Answer]]) -> tuple[Array, Answer]:
         """What all of them give together, oldest first."""
-        torque, (vdot, *_) = found[0]
+        torque, vdot = found[0][0], found[0][1].vdot
         status, ramps = found[-1][1].status, self._live[1:]
         self._live[0].u = 1.0  # nothing older is left to blend with
         for ramp, (tau, answer) in zip(ramps, found[1:], strict=True):
@@ -178,6 +188,6 @@ class Transition:
         if any(answer.status is Status.INCOMPLETE for _, answer in found):
             status = Status.INCOMPLETE
         newest = found[-1][1]
-        return torque, newest._replace(
-            vdot=vdot, status=status, slacks=None, torque=torque
+        return torque, Answer(
+            vdot, newest.ranks, status, torque=torque, kinetic=newest.kinetic
         )

@@ -1,4 +1,4 @@
-"""The closed loop that every contender runs, and the checks that it passes.
+"""The loop that every contender runs, and the checks that it passes.
 
 Needs numpy and Pinocchio only, which every environment has.
 """
@@ -6,6 +6,7 @@ Needs numpy and Pinocchio only, which every environment has.
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -14,9 +15,18 @@ from numpy.typing import NDArray
 
 from benchmarks.jobs import Job
 
-__all__ = ["Contender", "Failed", "Loop", "Target", "load_model", "twice_root"]
+__all__ = [
+    "Contender",
+    "Failed",
+    "Instant",
+    "Loop",
+    "Target",
+    "load_model",
+    "twice_root",
+]
 
 Array = NDArray[np.float64]
+Wrenches = Mapping[str, Array]
 
 CHECK_EVERY = 10
 
@@ -34,30 +44,62 @@ class Target(NamedTuple):
     a: Array
 
 
+class Instant(NamedTuple):
+    """What a controller saw at a tick of a recorded run, and the torques that it sent.
+
+    Time, positions, velocities, wrenches by sensor, torques.
+    """
+
+    t: float
+    q: Array
+    v: Array
+    wrenches: Wrenches
+    torque: Array
+
+
 class Contender(Protocol):
     """Someone's controller, set up for a job."""
 
     def aim(self, t: float, targets: list[Target]) -> None:
         """Move the references; timed apart from the tick."""
 
-    def tick(self, q: Array, v: Array) -> Array:
-        """From (q, v) to the torques (n,): what is timed."""
+    def tick(self, q: Array, v: Array, *felt: Wrenches) -> Array:
+        """From (q, v) to the torques (n,): what is timed.
+
+        In a replay of a recorded run, `felt` is what its sensors measured.
+        """
 
     def acceleration(self) -> Array:
         """The joint accelerations (n,) that belong to the last torques."""
 
 
 class Loop:
-    """One job of one contender, run in pieces on an ideal integrator."""
+    """One job of one contender, run in pieces.
 
-    def __init__(self, job: Job, contender: Contender, model: pin.Model) -> None:
-        self.job, self.contender = job, contender
+    The robot is an ideal integrator, or is wherever it was in a recorded run, whatever
+    the contender does.
+
+    Args:
+        job: the job.
+        contender: who does it.
+        model: of the robot.
+        recorded: the run to replay; () for the integrator.
+    """
+
+    def __init__(
+        self,
+        job: Job,
+        contender: Contender,
+        model: pin.Model,
+        recorded: Sequence[Instant] = (),
+    ) -> None:
+        self.job, self.contender, self.recorded = job, contender, recorded
         self.model, self.data = model, model.createData()
         self.q = np.array(job.home) if job.home else pin.neutral(model)
         self.v = np.zeros(model.nv)
         self.limit = np.array(model.effortLimit) * job.torque_share
         self.done, self.failure = 0, ""
-        self.torque_share = self.worst_dynamics = self.beyond = 0.0
+        self.torque_share = self.worst_dynamics = self.beyond = self.off = 0.0
         self.saturated = 0
         self._start = self._tips()
 
@@ -65,14 +107,14 @@ class Loop:
         """The next ticks: time of each, and of moving its references [ns]."""
         ticks, aims = [], []
         clock = time.perf_counter_ns
-        for _ in range(0 if self.failure else count):
-            t = self.done * self.job.dt
+        for _ in range(0 if self.failure else self._left(count)):
+            t, felt = self._begin()
             targets = self.targets(t)
             start = clock()
             self.contender.aim(t, targets)
             aimed = clock()
             try:
-                torque = self.contender.tick(self.q, self.v)
+                torque = self.contender.tick(self.q, self.v, *felt)
             except Failed as failure:
                 self.failure = f"{failure} at tick {self.done}"
                 break
@@ -104,14 +146,35 @@ class Loop:
             "saturated": self.saturated / max(self.done, 1),
             "dynamics_nm": self.worst_dynamics,
             "beyond_limits_rad": self.beyond,
+            "off_record_nm": self.off,
             "failure": self.failure,
         }
 
+    def _left(self, count: int) -> int:
+        """So many ticks, or what is left of the recorded run."""
+        return min(count, len(self.recorded) - self.done) if self.recorded else count
+
+    def _begin(self) -> tuple[float, tuple[Wrenches, ...]]:
+        """Time of the next tick, and what is felt there."""
+        if not self.recorded:
+            return self.done * self.job.dt, ()
+        t, self.q, self.v, wrenches, _ = self.recorded[self.done]
+        return t, (wrenches,)
+
     def _step(self, torque: Array, vdot: Array) -> None:
-        """Check the torques, then let the ideal robot accelerate as promised."""
+        """Check the torques, and go on to the next tick."""
         share = float(np.max(np.abs(torque) / self.limit))
         self.torque_share = max(self.torque_share, share)
         self.saturated += share > 1 - 1e-6
+        if self.recorded:
+            off = np.abs(torque - self.recorded[self.done].torque)
+            self.off = max(self.off, float(off.max()))
+        else:
+            self._accelerate(torque, vdot)
+        self.done += 1
+
+    def _accelerate(self, torque: Array, vdot: Array) -> None:
+        """Check the dynamics, then let the ideal robot accelerate as promised."""
         if self.done % CHECK_EVERY == 0:
             needed = pin.rnea(self.model, self.data, self.q, self.v, vdot)
             self.worst_dynamics = max(
@@ -122,7 +185,6 @@ class Loop:
         above = np.max(self.q - self.model.upperPositionLimit)
         below = np.max(self.model.lowerPositionLimit - self.q)
         self.beyond = max(self.beyond, float(above), float(below))
-        self.done += 1
 
     def _tips(self) -> list[tuple[Array, Array]]:
         pin.framesForwardKinematics(self.model, self.data, self.q)

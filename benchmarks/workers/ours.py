@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from benchmarks.jobs import Job
-from benchmarks.workers.loop import Array, Failed, Loop, Target
+from benchmarks.recording import Script, Stack
+from benchmarks.stacks import record
+from benchmarks.workers.loop import Array, Failed, Loop, Target, Wrenches
 from benchmarks.workers.serve import serve
-from robots import racer
 from sims.resolvers import make_resolver
-from sims.welding.parts import parts
 from tasks import (
     FrameOrientation,
     FramePose,
@@ -28,20 +28,17 @@ from wbc import Controller, Hierarchy, Level, Robot, State, Task
 class Ours:
     """A controller, called as a user calls it."""
 
-    def __init__(self, job: Job, robot: Robot, resolver: str) -> None:
+    def __init__(
+        self, job: Job, robot: Robot, resolver: str, stack: Stack | None = None
+    ) -> None:
         self.job, self.t = job, 0.0
         self.poses: list[FramePose] = []
         self.halves: list[tuple[FramePosition, FrameOrientation]] = []
-        self.script: Callable[[float], None] | None = None
-        self.controller = Controller(
-            robot, self._hierarchy(robot), make_resolver(resolver), job.dt
-        )
+        self.script: Script | None = None if stack is None else stack.script
+        hierarchy = self._hierarchy(robot) if stack is None else stack.hierarchy
+        self.controller = Controller(robot, hierarchy, make_resolver(resolver), job.dt)
 
     def _hierarchy(self, robot: Robot) -> Hierarchy:
-        if self.job.cell:
-            part = next(p for p in parts(robot) if p.name == self.job.cell)
-            self.script = part.script
-            return part.hierarchy
         job = self.job
         state = robot.state(np.array(job.home))
         torques, joints = TorqueLimits(job.torque_share), JointLimits()
@@ -76,9 +73,9 @@ class Ours:
             position.set_target(target.p, target.v, target.a)
             orientation.set_target(target.R)
 
-    def tick(self, q: Array, v: Array) -> Array:
-        """From (q, v) to the torques."""
-        self.solution = self.controller(q, v, self.t)
+    def tick(self, q: Array, v: Array, *felt: Wrenches) -> Array:
+        """From (q, v), and in a replay what was felt, to the torques."""
+        self.solution = self.controller(q, v, self.t, *felt)
         return self.solution.torque
 
     def acceleration(self) -> Array:
@@ -112,15 +109,22 @@ def _level(tasks: Sequence[Task]) -> Level:
 def open_loop(job: Job, kind: str) -> Loop:
     """The job under one of our resolvers."""
     if job.cell:
-        robot = racer.load()
-        contender = Ours(job, robot, kind)
-        loop = Loop(job, contender, robot.model)
-        loop.q = next(p for p in parts(robot) if p.name == job.cell).start.copy()
-        return loop
+        return _cell_loop(job, kind)
     robot = Robot.from_urdf(
         job.urdf, q_home=job.home, acceleration_limit=list(job.acceleration)
     )
     return Loop(job, Ours(job, robot, kind), robot.model)
+
+
+def _cell_loop(job: Job, kind: str) -> Loop:
+    """A cell's stack: through a recorded run, or from its start on an ideal robot."""
+    recording = record(job.cell, max(job.recorded, 1))
+    stack = recording.make()
+    contender = Ours(job, stack.robot, kind, stack)
+    instants = recording.instants if job.recorded else ()
+    loop = Loop(job, contender, stack.robot.model, instants)
+    loop.q = recording.instants[0].q.copy()
+    return loop
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from benchmarks.workers.loop import (
     Failed,
     Loop,
     Target,
+    Wrenches,
     load_model,
     twice_root,
 )
@@ -72,7 +73,7 @@ class Placo:
             task.ddtarget_world = target.a
             turn.R_world_frame = target.R
 
-    def tick(self, q: Array, v: Array) -> Array:
+    def tick(self, q: Array, v: Array, *felt: Wrenches) -> Array:
         """From (q, v) to the torques."""
         self.q[7:], self.qd[6:] = q, v
         state = self.robot.state

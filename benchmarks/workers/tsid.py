@@ -12,6 +12,7 @@ from benchmarks.workers.loop import (
     Failed,
     Loop,
     Target,
+    Wrenches,
     load_model,
     twice_root,
 )
@@ -77,7 +78,7 @@ class Tsid:
             sample.second_derivative(np.concatenate([target.a, np.zeros(3)]))
             task.setReference(sample)
 
-    def tick(self, q: Array, v: Array) -> Array:
+    def tick(self, q: Array, v: Array, *felt: Wrenches) -> Array:
         """From (q, v) to the torques."""
         problem = self.formulation.computeProblemData(self.t, q, v)
         self.solution = self.solver.solve(problem)

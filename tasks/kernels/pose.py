@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from wbc.arrays import ROTATION_TOLERANCE, Array
-from wbc.assembly import finite
 from wbc.compiled import compiled, inner
+from wbc.vectors import finite
 
 __all__ = ["FINE", "INFINITE", "NO_ROTATION", "take_pose"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,16 +11,25 @@ import numpy as np
 import pytest
 
 from benchmarks.arm import arms_urdf
+from benchmarks.cells import cell_resolvers
 from benchmarks.endurance import drifting_ticks, endure, welding_ticks
+from benchmarks.jobs import Job
 from benchmarks.problems import arm_motion, random_problems, smooth_motion
 from benchmarks.solvers import Daqp, Native
+from benchmarks.stacks import STACKS
 from benchmarks.tables import table
+from benchmarks.workers.ours import open_loop
+from sims.registry import cell_names
 from sims.resolvers import resolver_names
 from tests.tolerances import PROOF
 from wbc import Robot, solve_hierarchy
 
 ROOT = Path(__file__).parents[2]
 GROWTH_MB = 8.0
+RECORDED = 1500
+"""Ticks: every probe and peg has touched by then."""
+REPEATED = 1e-9
+"""Torques of a replay against those of its run [Nm]: the same arithmetic twice."""
 
 
 def run(*arguments):
@@ -32,19 +42,69 @@ def run(*arguments):
     )
 
 
-def test_quick_run_without_peers_prints_every_section():
+@pytest.fixture(scope="module")
+def quick():
     done = run("--quick", "--peers", "none")
     assert done.returncode == 0, done.stderr
-    titles = [line[4:] for line in done.stdout.splitlines() if line.startswith("### ")]
-    starts = ("Solver alone", "Solver along", "Tick: one arm", "Tick: welding")
+    return done.stdout
+
+
+def test_quick_run_without_peers_prints_every_section(quick):
+    titles = [line[4:] for line in quick.splitlines() if line.startswith("### ")]
+    starts = ("Solver alone", "Solver along", "Tick: one arm")
+    starts += tuple(f"Tick: {cell} cell" for cell in cell_names())
     starts += ("Breakdown", "Growth", "Start", "Endurance")
     assert all(any(t.startswith(start) for t in titles) for start in starts)
-    assert "processor: " in done.stdout
-    untold = {"nullspace:tsid", "nullspace:uf"}
-    names = set(resolver_names()) - untold
-    assert all(f"| wbc {name} " in done.stdout for name in names)
-    assert "failed at tick" not in done.stdout
-    assert str(ROOT) not in done.stdout
+    assert "processor: " in quick
+    assert all(f"| wbc {name} " in quick for name in resolver_names())
+    assert "failed at tick" not in quick
+    assert str(ROOT) not in quick
+
+
+def test_every_resolver_gets_through_every_stack_of_every_cell(quick):
+    tables = {
+        title: [[cell.strip() for cell in row.split("|")] for row in rows]
+        for title, *rows in map(str.splitlines, quick.split("### ")[1:])
+    }
+    for stack, size in STACKS.items():
+        rows = tables[f"Tick: {stack.replace(':', ' cell,')}: {size}"]
+        found = {row[1]: row for row in rows if row[1:] and row[1].startswith("wbc ")}
+        assert set(found) == {f"wbc {name}" for name in cell_resolvers()}
+        for row in found.values():
+            assert 0.0 < float(row[2]) <= float(row[3])
+            assert row[-2] == ""
+    assert {stack.partition(":")[0] for stack in STACKS} == set(cell_names())
+
+
+def test_every_stack_of_a_cell_has_its_line_in_the_summary(quick):
+    summary = quick.partition("### Summary")[2]
+    for stack, size in STACKS.items():
+        assert f"| tick, {stack.replace(':', ' cell,')}: {size} " in summary
+
+
+@pytest.mark.parametrize("stack", STACKS)
+def test_the_replay_of_a_cell_is_the_run_that_was_recorded(stack):
+    job = Job(stack, cell=stack, recorded=RECORDED)
+    loop = open_loop(job, "hqp")
+    axes, levels = map(int, re.findall(r"\d+", STACKS[stack]))
+    controller = loop.contender.controller
+    assert (controller.robot.nv, len(controller.hierarchy)) == (axes, levels)
+    ticks, _ = loop.run(RECORDED + 1)
+    report = loop.report()
+    assert len(ticks) == report["ticks"] == len(loop.recorded) > 0
+    assert report["failure"] == ""
+    assert report["off_record_nm"] <= REPEATED
+
+
+@pytest.mark.parametrize("stack", ["cutting: both arms", "contact: peg, insertion"])
+def test_a_replay_without_its_wrenches_is_off_the_record(stack):
+    loop = open_loop(Job(stack, cell=stack, recorded=RECORDED), "hqp")
+    loop.recorded = [
+        instant._replace(wrenches={name: np.zeros(6) for name in instant.wrenches})
+        for instant in loop.recorded
+    ]
+    loop.run(RECORDED)
+    assert loop.report()["off_record_nm"] > 1e-2
 
 
 @pytest.mark.parametrize("ticks_of", [welding_ticks, drifting_ticks])

@@ -10,9 +10,9 @@ import pytest
 
 from tests.tolerances import ROUND_OFF
 from wbc.arrays import Array, IntArray
-from wbc.lexicographic.vectors import add_scaled, copy, dot
 from wbc.pointers import address_of, matrix
 from wbc.structure import ENTRIES, Structure
+from wbc.vectors import add_scaled, copy, dot
 
 ROWS, COLUMNS = 3, 4
 

@@ -20,8 +20,9 @@ from wbc.explain.data import (
 from wbc.explain.fading import Fading, fading
 from wbc.explain.response import NEGLIGIBLE, Response, Tick, responses
 from wbc.linalg import factorise, norm
-from wbc.stack import Stack, Term
+from wbc.stack import Stack
 from wbc.task import MotionTask
+from wbc.term import Term
 
 if TYPE_CHECKING:
     from wbc.transition import Transition

@@ -47,7 +47,7 @@ class Tick:
     def __init__(self, stack: Stack, vdot: Array) -> None:
         self.stack, self.vdot, self.torque = stack, vdot, stack.torque(vdot)
         A, lower, upper = stack.Ay, stack.lower, stack.upper
-        self.y = np.linalg.solve(stack.L_inv.T, vdot).astype(np.float64, copy=False)
+        self.y = stack.coordinates(vdot)
         value, self.norm = A @ self.y, np.linalg.norm(A, axis=1)
         size = self.norm * (1.0 + np.linalg.norm(self.y)) + np.abs(value)
         self.A, self.near = A, AT_BOUND * size

@@ -15,8 +15,8 @@ from __future__ import annotations
 from wbc.compiled import inner
 from wbc.lexicographic.multipliers import ROUND_OFF, multipliers, slack_floor
 from wbc.lexicographic.sweep import sweep
-from wbc.lexicographic.vectors import copy, dot, length, reflect, reflect_back
 from wbc.lexicographic.work import Work
+from wbc.vectors import copy, dot, length, reflect, reflect_back
 
 __all__ = ["descend"]
 

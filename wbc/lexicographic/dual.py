@@ -19,8 +19,8 @@ import numpy as np
 from wbc.compiled import inner
 from wbc.lexicographic.moves import along, make_basis, move
 from wbc.lexicographic.sweep import factorise, resolve, take_point, working_rows
-from wbc.lexicographic.vectors import add_scaled, copy, dot, length
 from wbc.lexicographic.work import Dual, Work
+from wbc.vectors import add_scaled, copy, dot, length
 
 __all__ = ["climb"]
 

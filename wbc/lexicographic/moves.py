@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from wbc.arrays import Array
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, copy, dot, reflect, reflect_back
 from wbc.lexicographic.work import Dual, Work
+from wbc.vectors import add_scaled, copy, dot, reflect, reflect_back
 
 __all__ = ["along", "make_basis", "move"]
 

@@ -13,8 +13,8 @@ import numpy as np
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
 from wbc.lexicographic.sweep import few_left
-from wbc.lexicographic.vectors import add_scaled, dot, length, reflect
 from wbc.lexicographic.work import Work
+from wbc.vectors import add_scaled, dot, length, reflect
 
 __all__ = ["FEASIBILITY", "ROUND_OFF", "fault", "multipliers", "slack_floor"]
 

@@ -13,7 +13,6 @@ from wbc.lexicographic.descent import descend
 from wbc.lexicographic.dual import climb
 from wbc.lexicographic.multipliers import ROUND_OFF, fault
 from wbc.lexicographic.sweep import sweep, take_point
-from wbc.lexicographic.vectors import copy, dot, length
 from wbc.lexicographic.work import (
     DUAL,
     MOST,
@@ -27,6 +26,7 @@ from wbc.lexicographic.work import (
 )
 from wbc.linalg import RANK_TOLERANCE
 from wbc.memory import Memory
+from wbc.vectors import copy, dot, length
 
 __all__ = ["Lexicographic", "lexicographic"]
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import (
+from wbc.lexicographic.work import Work
+from wbc.vectors import (
     add_scaled,
     copy,
     dot,
@@ -21,7 +22,6 @@ from wbc.lexicographic.vectors import (
     reflect,
     reflect_back,
 )
-from wbc.lexicographic.work import Work
 
 __all__ = ["factorise", "few_left", "resolve", "sweep", "take_point", "working_rows"]
 

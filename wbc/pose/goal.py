@@ -11,9 +11,10 @@ from wbc.errors import InputError, SolverError
 from wbc.hierarchy import Hierarchy, Level
 from wbc.law import Damper
 from wbc.pose.result import TaskMiss
-from wbc.stack import Stack, Term
+from wbc.stack import Stack
 from wbc.state import State
 from wbc.task import MotionTask, Task
+from wbc.term import Term
 
 if TYPE_CHECKING:
     from wbc.robot import Robot

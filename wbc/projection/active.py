@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import compiled, inner
-from wbc.lexicographic.vectors import add_scaled, dot, length
 from wbc.projection.recursion import norm, project, target
 from wbc.projection.work import Work, set_problem, work_at
+from wbc.vectors import add_scaled, dot, length
 
 __all__ = ["saturate"]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from wbc.arrays import Array, IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, dot, length
+from wbc.vectors import add_scaled, dot, length
 
 __all__ = ["align", "fill", "start_from_axes"]
 

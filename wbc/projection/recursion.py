@@ -6,10 +6,10 @@ import numpy as np
 
 from wbc.arrays import IntArray
 from wbc.compiled import inner
-from wbc.lexicographic.vectors import add_scaled, dot
 from wbc.linalg import RANK_TOLERANCE
 from wbc.projection.basis import align, fill, start_from_axes
 from wbc.projection.work import Work
+from wbc.vectors import add_scaled, dot
 
 __all__ = ["norm", "project", "target"]
 

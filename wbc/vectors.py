@@ -1,4 +1,4 @@
-"""Inner loops of the solver, for vectors of a few to a few dozen numbers.
+"""Inner loops of the tick, for vectors of a few to a few dozen numbers.
 
 They go by four, which fits the vector units, and end without a loop: with so few
 numbers, what the processor cannot foresee costs more than the arithmetic. Their
@@ -13,9 +13,11 @@ from typing import Final
 import numpy as np
 
 from wbc.arrays import Array
-from wbc.compiled import inner
+from wbc.compiled import compiled, inner
 
-__all__ = ["add_scaled", "copy", "dot", "fours", "length", "reflect", "reflect_back"]
+__all__ = [
+    "add_scaled", "copy", "dot", "finite", "fours", "length", "reflect", "reflect_back",
+]  # fmt: skip
 
 ONE: Final = np.uintp(1)
 TWO: Final = np.uintp(2)
@@ -76,6 +78,23 @@ def copy(a: Array, b: Array) -> None:
     """B <- a; assigning a slice would allocate, in case the two overlap."""
     for j in range(a.size):
         b[j] = a[j]
+
+
+@compiled
+def finite(a: Array) -> bool:
+    """Whether no number of a (n,) is NaN or infinite: 0 times any other is 0."""
+    j, end = np.uintp(0), np.uintp(a.size)
+    s0 = s1 = s2 = s3 = 0.0
+    while j + FOUR <= end:
+        s0 += 0.0 * a[j]
+        s1 += 0.0 * a[j + ONE]
+        s2 += 0.0 * a[j + TWO]
+        s3 += 0.0 * a[j + THREE]
+        j += FOUR
+    while j < end:
+        s0 += 0.0 * a[j]
+        j += ONE
+    return bool((s0 + s1) + (s2 + s3) == 0.0)
 
 
 @inner
