@@ -52,7 +52,7 @@ def text(value: Any, what: str) -> str:
         InputError: something else.
     """
     if not isinstance(value, str) or not value:
-        raise InputError(f"{what} must be a string with something in it, {got(value)}")
+        raise InputError(f"{what} must be a string, not empty, {got(value)}")
     return value
 
 

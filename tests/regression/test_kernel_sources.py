@@ -10,7 +10,7 @@ import wbc
 
 ROOTS = [Path(str(package.__file__)).parent for package in (wbc, tasks)]
 MARKS = ("wbc.compiled", "NamedTuple", "numba")
-"""What `wbc.compiled` looks for in a file, to see whether kernels depend on it."""
+"""What `wbc.cache` looks for in a file, to see whether kernels depend on it."""
 
 
 def modules() -> dict[str, str]:
