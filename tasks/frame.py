@@ -9,14 +9,17 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
+from tasks.target import ORIGIN, POSE, STILL, UPRIGHT, take_target
 from wbc import PD, Robot
-from wbc.arrays import Array, frozen, rotation
+from wbc.arrays import Array
 from wbc.checks import named
 
 __all__ = ["FrameOrientation", "FramePose", "FramePosition"]
 
 AXES = ("x", "y", "z")
-STILL = np.zeros(3)
+AT_REST = STILL[:3]
+TARGET = ("target", "target", "target velocity", "target acceleration")
+"""What is given, in messages."""
 
 
 @final
@@ -53,18 +56,16 @@ class FramePosition(CatalogueTask):
     def set_target(
         self,
         target: ArrayLike,
-        velocity: ArrayLike = STILL,
-        acceleration: ArrayLike = STILL,
+        velocity: ArrayLike = AT_REST,
+        acceleration: ArrayLike = AT_REST,
     ) -> None:
         """Move the target: position [m], velocity [m/s], acceleration [m/s^2].
 
         Raises:
             InputError: not of shape (3,) or not finite; the target stays as it was.
         """
-        p = frozen(target, (3,), f"target of '{self.name}'")
-        pd = frozen(velocity, (3,), f"target velocity of '{self.name}'")
-        pdd = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._parameters[:] = np.concatenate([p, pd, pdd])
+        given = (target, UPRIGHT, velocity, acceleration)
+        take_target(self.name, TARGET, given, self._parameters)
 
     def parameters(self, robot: Robot) -> Array:
         """Target, its velocity and acceleration (9,), live."""
@@ -111,18 +112,16 @@ class FrameOrientation(CatalogueTask):
     def set_target(
         self,
         target: ArrayLike,
-        velocity: ArrayLike = STILL,
-        acceleration: ArrayLike = STILL,
+        velocity: ArrayLike = AT_REST,
+        acceleration: ArrayLike = AT_REST,
     ) -> None:
         """Turn the target: rotation, angular velocity and acceleration, world axes.
 
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        R = rotation(target, f"target of '{self.name}'")
-        omega = frozen(velocity, (3,), f"target velocity of '{self.name}'")
-        alpha = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._parameters[:] = np.concatenate([R.ravel(), omega, alpha])
+        given = (ORIGIN, target, velocity, acceleration)
+        take_target(self.name, TARGET, given, self._parameters)
 
     def parameters(self, robot: Robot) -> Array:
         """Target (9,), its angular velocity and acceleration, live."""
@@ -168,20 +167,16 @@ class FramePose(CatalogueTask):
         self,
         position: ArrayLike,
         orientation: ArrayLike,
-        twist: ArrayLike = np.zeros(6),  # noqa: B008 - never written
-        acceleration: ArrayLike = np.zeros(6),  # noqa: B008 - never written
+        twist: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
     ) -> None:
         """Move the target; twist and its derivative are [linear; angular], world axes.
 
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(position, (3,), f"target position of '{self.name}'")
-        R = rotation(orientation, f"target orientation of '{self.name}'")
-        V = frozen(twist, (6,), f"target twist of '{self.name}'")
-        A = frozen(acceleration, (6,), f"target acceleration of '{self.name}'")
-        linear = [p, V[:3], A[:3]]
-        self._parameters[:] = np.concatenate([*linear, R.ravel(), V[3:], A[3:]])
+        given = (position, orientation, twist, acceleration)
+        take_target(self.name, POSE, given, self._parameters)
 
     def parameters(self, robot: Robot) -> Array:
         """Those of `FramePosition`, then those of `FrameOrientation`, live."""

@@ -9,19 +9,15 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask, flat_frame, run_kernel
 from tasks.evaluator import Code
-from tasks.kernels.pose import INFINITE, NO_ROTATION, take_pose
+from tasks.target import POSE, STILL, take_target
 from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import Array
 from wbc.checks import flag, named, text
-from wbc.errors import InputError, UnknownName, shown
+from wbc.errors import UnknownName
 from wbc.kernel import NO_TABLE
 
 __all__ = ["KnifePose"]
 
-STILL = np.zeros(6)
-STILL.flags.writeable = False
-SHAPES = ((3,), (3, 3), (6,), (6,))
-WHAT = ("position", "orientation", "twist", "acceleration")
 NORMAL, ACROSS, DOWN = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 
 
@@ -92,32 +88,11 @@ class KnifePose(CatalogueTask):
             InputError: unusable values; the target stays as it was.
         """
         given = (position, orientation, twist, acceleration)
-        try:
-            p, R, V, A = target = [_numbers(x) for x in given]
-        except (TypeError, ValueError, OverflowError) as error:
-            raise InputError(
-                f"position, orientation, twist and acceleration of '{self.name}' must "
-                f"be numbers, got {shown(given)}."
-            ) from error
-        if (p.shape, R.shape, V.shape, A.shape) != SHAPES:
-            raise self._misshapen(target)
-        fault = take_pose(p, R, V, A, self._parameters)
-        if fault == INFINITE:
-            raise InputError(f"target of '{self.name}' must be finite, got {target}.")
-        if fault == NO_ROTATION:
-            raise InputError(f"orientation of '{self.name}' is no rotation: {R}.")
+        p = self._parameters
+        take_target(self.name, POSE, given, p)
         if self.rocking:
             axis = self._axis
-            axis[9:12], axis[12:15], axis[15:] = R[:, 1], V[3:], A[3:]
-
-    def _misshapen(self, target: list[Array]) -> InputError:
-        """Which part of a target has the wrong shape."""
-        parts = zip(target, SHAPES, WHAT, strict=True)
-        array, shape, what = next(part for part in parts if part[0].shape != part[1])
-        return InputError(
-            f"target {what} of '{self.name}' has shape {array.shape}; it must be "
-            f"{shape}."
-        )
+            axis[9:12], axis[12:15], axis[15:] = p[10:18:3], p[18:21], p[21:24]
 
     def parameters(self, robot: Robot) -> Array:
         """Those of `FramePose`, live."""
@@ -153,11 +128,6 @@ class KnifePose(CatalogueTask):
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
         torque += state.jacobian(self.sensor_frame).T @ measured
-
-
-def _numbers(value: ArrayLike) -> Array:
-    """A copy in the one memory layout that the kernel is compiled for."""
-    return np.array(value, dtype=np.float64, order="C")
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

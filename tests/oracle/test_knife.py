@@ -79,10 +79,10 @@ def test_rocking_still_holds_the_flat_of_the_blade():
         ({"orientation": np.full((3, 3), np.inf)}, "must be finite"),
         ({"twist": np.full(6, np.nan)}, "must be finite"),
         ({"acceleration": np.full(6, np.inf)}, "must be finite"),
-        ({"orientation": 1.1 * np.eye(3)}, "no rotation"),
-        ({"orientation": np.diag([1.0, 1.0, -1.0])}, "no rotation"),
-        ({"orientation": np.zeros((3, 3))}, "no rotation"),
-        ({"position": ["a", 0, 0]}, "must be numbers"),
+        ({"orientation": 1.1 * np.eye(3)}, "not a rotation matrix"),
+        ({"orientation": np.diag([1.0, 1.0, -1.0])}, "not a rotation matrix"),
+        ({"orientation": np.zeros((3, 3))}, "not a rotation matrix"),
+        ({"position": ["a", 0, 0]}, "not an array of numbers"),
     ],
 )
 def test_an_unusable_target_is_refused_and_the_old_one_stays(part, message):

@@ -1,4 +1,4 @@
-"""A moving pose as numbers that kernels read, checked on the way."""
+"""A moving target as numbers that kernels read, checked on the way."""
 
 from __future__ import annotations
 
@@ -6,36 +6,39 @@ from wbc.arrays import ROTATION_TOLERANCE, Array
 from wbc.compiled import compiled, inner
 from wbc.vectors import finite
 
-__all__ = ["FINE", "INFINITE", "NO_ROTATION", "take_pose"]
-
-FINE, INFINITE, NO_ROTATION = 0, 1, 2
-"""What can be said of a pose."""
+__all__ = ["take"]
 
 
 @compiled
-def take_pose(p: Array, R: Array, V: Array, A: Array, out: Array) -> int:
-    """Write a pose, unless it is unusable.
+def take(p: Array, R: Array, V: Array, A: Array, out: Array) -> bool:
+    """Write a target, unless it is unusable; whether it was written.
 
     Args:
         p: (3,) position [m].
         R: (3, 3) orientation.
-        V: (6,) twist [linear; angular], world axes.
-        A: (6,) its derivative.
-        out: (24,) p, its velocity and acceleration, R, its velocity and acceleration.
-
-    Returns:
-        `FINE`, or what is wrong with it; nothing is written then.
+        V: (3,) velocity, linear or angular, or (6,) twist [linear; angular].
+        A: its derivative.
+        out: (9,) p, its velocity and acceleration; (15,) R, its velocity and
+            acceleration; or (24,) one after the other.
     """
     if not (finite(p) and finite(R.reshape(9)) and finite(V) and finite(A)):
-        return INFINITE
+        return False
     if not _is_rotation(R):
-        return NO_ROTATION
+        return False
+    if out.size != 15:
+        for i in range(3):
+            out[i], out[3 + i], out[6 + i] = p[i], V[i], A[i]
+    if out.size != 9:
+        _take_rotation(R, V[V.size - 3 :], A[A.size - 3 :], out[out.size - 15 :])
+    return True
+
+
+@inner
+def _take_rotation(R: Array, omega: Array, alpha: Array, out: Array) -> None:
     for i in range(3):
-        out[i], out[3 + i], out[6 + i] = p[i], V[i], A[i]
-        out[18 + i], out[21 + i] = V[3 + i], A[3 + i]
         for j in range(3):
-            out[9 + 3 * i + j] = R[i, j]
-    return FINE
+            out[3 * i + j] = R[i, j]
+        out[9 + i], out[12 + i] = omega[i], alpha[i]
 
 
 @inner
