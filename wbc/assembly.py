@@ -35,8 +35,7 @@ def assemble(table: IntArray) -> int:
         table: of `wbc.slots`.
 
     Returns:
-        -1 if all is well, -2 if the inertia is not positive definite, else the index of
-        a row that is not finite (bounds may be infinite, but not NaN).
+        how it ended, as `wbc.slots` lists; bounds may be infinite, but not NaN.
     """
     n, m = table[slots.JOINTS], table[slots.ROWS]
     M = matrix(floats_at(table[slots.INERTIA], n * n), n, n)
@@ -44,7 +43,7 @@ def assemble(table: IntArray) -> int:
     L = matrix(floats_at(table[slots.FACTOR], n * n), n, n)
     U = matrix(floats_at(table[slots.INVERSE], n * n), n, n)
     if not factorise(M, L, U):
-        return -2
+        return slots.NOT_POSITIVE
     raw = matrix(floats_at(table[slots.RAW], m * n), m, n)
     bands = matrix(floats_at(table[slots.BANDS], 5 * m), 5, m)
     weights = floats_at(table[slots.WEIGHTS], m)
@@ -63,8 +62,8 @@ def assemble(table: IntArray) -> int:
         bounds[0, i] = weight * (bands[3, i] - bias)
         bounds[1, i] = weight * (bands[4, i] - bias)
     if finite(numbers) and not _any_nan(bounds):
-        return -1
-    return _first_bad(Ay, bounds)
+        return slots.SOLVED
+    return slots.BAD_ROW
 
 
 @inner
@@ -123,15 +122,6 @@ def _any_nan(bounds: Array) -> bool:
     for i in range(bounds.shape[1]):
         found |= np.isnan(bounds[0, i]) | np.isnan(bounds[1, i])
     return bool(found)
-
-
-@inner
-def _first_bad(Ay: Array, bounds: Array) -> int:
-    """Index of the first row that is not finite."""
-    for i in range(Ay.shape[0]):
-        if not finite(Ay[i]) or np.isnan(bounds[0, i]) or np.isnan(bounds[1, i]):
-            return i
-    return -1
 
 
 @compiled

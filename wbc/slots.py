@@ -21,8 +21,7 @@ JOINT = 24
 """Address of a stack's array of the joints that its rows are about, where it is one."""
 SIZE = 25
 
-SOLVED, NOT_POSITIVE, UNSOLVED, NOT_FINITE, BEYOND, UNMEASURED = range(-1, -7, -1)
-"""How a tick can end, besides with the index of a row that is not finite: well; with
-an inertia that is none; with the best point of a solver out of iterations; with a
-torque that is not finite, or beyond a bound that could be kept; before it began, at a
-measurement that is not finite."""
+SOLVED, UNSOLVED, UNMEASURED, NOT_POSITIVE, BAD_ROW, NOT_FINITE, BEYOND = range(7)
+"""How a tick can end: well; with the best point of a solver out of iterations; before
+it began, at a measurement that is not finite; with an inertia that is none; with a row
+that is not finite; with a torque that is not, or beyond a bound that could be kept."""

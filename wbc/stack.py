@@ -11,7 +11,8 @@ from wbc.arrays import Array
 from wbc.assembly import kept, measured
 from wbc.binding import register
 from wbc.compiled import announce
-from wbc.errors import InputError, ModelError, SolverError
+from wbc.errors import InputError
+from wbc.failure import complain
 from wbc.hierarchy import Hierarchy
 from wbc.inertia import back_substitute, inverse_dynamics
 from wbc.pointers import address_of
@@ -185,7 +186,7 @@ class Stack:
             outcome = run(table, state.q, state.v, state.t, state.dt, out)
         self.solved = outcome == slots.SOLVED
         if not self.solved and outcome != slots.UNSOLVED:
-            self._complain(outcome)
+            complain(self, outcome)
 
     def _prepare(self, state: State) -> bool:
         """What compiled code leaves to Python, unless a measurement is not finite."""
@@ -203,26 +204,6 @@ class Stack:
         for task in self._advancing:
             self.h += state.advanced(task)
         self.h += state.h
-
-    def _complain(self, outcome: int) -> NoReturn:
-        """Say which row is not finite, or that the inertia is no inertia."""
-        for term in self.terms:
-            if term.where.start <= outcome < term.where.stop:
-                row = term.names[outcome - term.where.start]
-                raise SolverError(
-                    f"task '{term.task.name}' wrote a row '{row}' that is not finite.",
-                    term.level,
-                )
-        if outcome == slots.UNMEASURED:
-            raise SolverError("a position, a velocity or the time is not finite.")
-        if outcome == slots.NOT_FINITE:
-            raise SolverError("a torque is not finite.")
-        if outcome == slots.BEYOND:
-            raise SolverError(
-                f"'{self.terms[0].task.name}' on top cannot be broken, and was: a "
-                "velocity, target or gain is too large to calculate with."
-            )
-        raise ModelError("the inertia matrix is not positive definite.")
 
     def _bind(self, state: State) -> None:
         """Read from another State's memory from now on."""
@@ -270,9 +251,9 @@ class Stack:
         """
         tau = np.empty(vdot.size)
         if not inverse_dynamics(self._M, self.h, vdot, tau):
-            self._complain(slots.NOT_FINITE)
+            complain(self, slots.NOT_FINITE)
         if not kept(self.raw, self.bands, int(self._table[slots.GUARDED]), tau):
-            self._complain(slots.BEYOND)
+            complain(self, slots.BEYOND)
         return tau
 
     def __reduce__(self) -> NoReturn:
