@@ -165,13 +165,15 @@ def _multipliers(above: list[_Above], pull: Array) -> tuple[Array, Array]:
     unit = A / np.where(norm > 0.0, norm, 1.0)[:, None]
     free = np.concatenate([a.free for a in above]) & (norm > 0.0)
     side = np.concatenate([a.side for a in above]) * (norm > 0.0)
-    signed = np.flatnonzero(side)
     Q = _range(unit[free])
-    towards = (unit[signed] * side[signed, None]).T
-    target = pull - Q @ (Q.T @ pull)
+    across = (unit - unit @ Q @ Q.T) * side[:, None]
+    length = np.linalg.norm(across, axis=1)
+    signed = np.flatnonzero(length > INDEPENDENT)  # the others push like free rows
     flat = np.zeros(norm.size)
     if signed.size:
-        flat[signed] = nnls(towards - Q @ (Q.T @ towards), target)[0] * side[signed]
+        towards = (across[signed] / length[signed, None]).T  # nnls overlooks short ones
+        found = nnls(towards, pull - Q @ (Q.T @ pull))[0]
+        flat[signed] = found / length[signed] * side[signed]
     left = pull - unit.T @ flat
     flat[free] = np.linalg.lstsq(unit[free].T, left, rcond=INDEPENDENT)[0]
     rest = pull - unit.T @ flat

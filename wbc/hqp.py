@@ -160,6 +160,7 @@ def _alone(rows: list[LevelRows], _: str | None) -> tuple[CascadeResult, Status]
     sizes = [lower.size for _, lower, _ in rows]
     solver = Lexicographic(sizes, rows[0][0].shape[1])
     A, lower, upper = (np.concatenate(arrays) for arrays in zip(*rows, strict=True))
+    A = np.ascontiguousarray(A)  # levels by columns are put together by columns
     done = solver.solve(A, lower, upper)
     slacks = tuple(np.split(solver.slack.copy(), np.cumsum(sizes)[:-1]))
     status = Status.SOLVED if done else Status.INCOMPLETE

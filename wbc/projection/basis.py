@@ -75,14 +75,19 @@ def align(
 
 @inner
 def _reflect(Z: Array, B: Array, i: int, q: int, rows: int, spare: Array) -> None:
-    """Reflect so that of directions i and later only i has an image in row q."""
-    n, square = Z.shape[0], 0.0
+    """Reflect so that of directions i and later only i has an image in row q.
+
+    However small the others are: what stays would count against small blocks below.
+    """
+    n, others = Z.shape[0], 0.0
     v, mixed = spare[0], spare[1]
-    for j in range(i, n):
+    v[i] = B[i, q]
+    for j in range(i + 1, n):
         v[j] = B[j, q]
-        square += v[j] * v[j]
-    if square == v[i] * v[i]:
+        others += v[j] * v[j]
+    if others == 0.0:
         return
+    square = v[i] * v[i] + others
     alpha = -np.sqrt(square) if v[i] > 0.0 else np.sqrt(square)
     beta = 1.0 / (square - alpha * v[i])
     v[i] -= alpha
