@@ -7,7 +7,17 @@ from abc import abstractmethod
 import numpy as np
 
 from tasks.evaluator import SCRATCH, Code, evaluate, run
-from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
+from wbc import (
+    PD,
+    Damper,
+    FrameState,
+    Kernel,
+    MotionTask,
+    Robot,
+    Rows,
+    SaturatedPD,
+    State,
+)
 from wbc.arrays import Array, IntArray
 from wbc.binding import refuse_in_use
 from wbc.compiled import python
@@ -53,17 +63,19 @@ class CatalogueTask(MotionTask):
 
     def kernel(self, robot: Robot) -> Kernel | None:
         """The compiled half; None where the law is not one that is compiled."""
-        if not isinstance(self.law, PD | Damper):
+        law = self.law
+        if not isinstance(law, PD | Damper | SaturatedPD):
             return None
         m = len(self.row_names(robot))
-        stiffness = self.law.stiffness if isinstance(self.law, PD) else np.zeros(())
+        stiffness = np.zeros(()) if isinstance(law, Damper) else law.stiffness
         return Kernel(
             run,
             int(self.code),
             self.live_parameters(robot),
             self.table(robot),
             np.broadcast_to(stiffness, (m,)),
-            np.broadcast_to(self.law.damping, (m,)),
+            np.broadcast_to(law.damping, (m,)),
+            law.gains if isinstance(law, SaturatedPD) else None,
             self.joint_indices(robot),
             self.moving,
         )

@@ -10,11 +10,13 @@ from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
 from tasks.kernels.points import on_point
 from tasks.kernels.rotations import along, orientation, pose
 from wbc import slots
+from wbc.approach import approach
 from wbc.arrays import Array, IntArray
 from wbc.assembly import measured
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
 from wbc.pointers import floats_at, integers_at, matrix
+from wbc.program import ENTRY
 from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
 from wbc.tick import conclude
@@ -113,7 +115,7 @@ def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) ->
     for i in range(f):
         update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch[1], n)
     _write_rows(
-        matrix(integers_at(table[slots.PROGRAM], tasks * 10), tasks, 10),
+        matrix(integers_at(table[slots.PROGRAM], tasks * ENTRY), tasks, ENTRY),
         matrix(floats_at(table[slots.GAINS], 2 * m), 2, m),
         blocks,
         scratch,
@@ -143,10 +145,10 @@ def _write_rows(
     """The rows of all tasks, and the accelerations that their laws want of them.
 
     Args:
-        program: (k, 10) for each task: code, frame, first row, end, address and size of
+        program: (k, 11) for each task: code, frame, first row, end, address and size of
             parameters, address and size of the table, second frame (-1 for none),
             address of a frame that moves by itself (0 for none; it takes the place of
-            the frame that is -2).
+            the frame that is -2), address of the gains of `approach` (0 for none).
         gains: (2, m) stiffness and damping of every row; negative for bounds.
         blocks: the frames, flat.
         scratch: (4, 96 + 6 n) numbers on the way; the last row starts as zeros.
@@ -178,6 +180,11 @@ def _write_rows(
                 bands[1, i] += dot(A[i], v, 0, n)
                 wish = gains[0, i] * bands[0, i] + gains[1, i] * bands[1, i]
                 bands[3, i] = bands[4, i] = -wish - bands[2, i]
+        if program[k, 10] != 0:
+            approach(out.error, out.rate, floats_at(program[k, 10], 4), out.upper)
+            for i in range(begin, end):
+                bands[4, i] -= bands[2, i]
+                bands[3, i] = bands[4, i]
 
 
 @inner
