@@ -6,11 +6,10 @@ from abc import abstractmethod
 
 import numpy as np
 
-from tasks.evaluator import SCRATCH, Code, evaluate, run
+from tasks.evaluator import SCRATCH, Code, evaluate_alone, run
 from wbc import (
     PD,
     Damper,
-    FrameState,
     Kernel,
     MotionTask,
     Robot,
@@ -20,12 +19,11 @@ from wbc import (
 )
 from wbc.arrays import Array, IntArray
 from wbc.binding import refuse_in_use
-from wbc.compiled import python
-from wbc.frames import frame_at, frame_size
+from wbc.frames import frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
 
-__all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
+__all__ = ["CatalogueTask", "run_kernel"]
 
 
 class CatalogueTask(MotionTask):
@@ -90,9 +88,11 @@ class CatalogueTask(MotionTask):
         """The task's frame, as seen from its second one if it has two."""
         n, flat = state.robot.nv, []
         for name in self.frames:
-            flat.append(flat_frame(state.frame(name), n))
             if name == WORLD and self.moving is not None:
+                flat.append(np.zeros(frame_size(n)))
                 moved(self.moving, state.t, flat[-1])
+            else:
+                flat.append(state.flat(name))
         if len(flat) == 2:
             seen = np.zeros(frame_size(n))
             relative(flat[0], flat[1], seen, np.zeros(SCRATCH), n)
@@ -110,11 +110,11 @@ def run_kernel(
 ) -> None:
     """Write one task's rows at a state; F is a flat frame."""
     n = state.robot.nv
-    evaluate(
+    evaluate_alone(
         int(code),
         np.array(parameters),  # one memory layout, so that one compilation serves all
         np.array(table),
-        python(frame_at)(np.zeros(frame_size(n)) if F is None else F, n),
+        np.zeros(frame_size(n)) if F is None else F,
         np.array(state.q),
         np.array(state.v),
         state.t,
@@ -122,11 +122,3 @@ def run_kernel(
         np.zeros(SCRATCH + n),
         out,
     )
-
-
-def flat_frame(F: FrameState, n: int) -> Array:
-    """A frame as kernels lay it out."""
-    flat = np.empty(frame_size(n))
-    for target, source in zip(python(frame_at)(flat, n), F, strict=True):
-        target[:] = source
-    return flat

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from tasks.kernels.clearance import clearance
 from tasks.kernels.constraints import constraint
 from tasks.kernels.joints import at_rest, at_target, joint_bounds, torque_bounds
 from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
@@ -22,7 +23,7 @@ from wbc.rows import Rows
 from wbc.tick import conclude
 from wbc.vectors import dot
 
-__all__ = ["SCRATCH", "Code", "evaluate", "run"]
+__all__ = ["SCRATCH", "Code", "evaluate", "evaluate_alone", "run"]
 
 
 class Code(IntEnum):
@@ -40,6 +41,7 @@ class Code(IntEnum):
     AT_REST = 9
     JOINT_BOUNDS = 10
     TORQUE_BOUNDS = 11
+    CLEARANCE = 12
 
 
 @compiled
@@ -94,6 +96,26 @@ def evaluate(
         joint_bounds(p, table, q, v, dt, out)
     elif code == 11:
         torque_bounds(p, out)
+    elif code == 12:
+        clearance(p, F, out)
+
+
+@compiled
+def evaluate_alone(
+    code: int,
+    p: Array,
+    table: Array,
+    flat: Array,
+    q: Array,
+    v: Array,
+    t: float,
+    dt: float,
+    scratch: Array,
+    out: Rows,
+) -> None:
+    """The same for a flat frame (24 + 6 n,), with fewer arrays to hand over."""
+    F = frame_at(flat, q.size)
+    evaluate(code, p, table, F, q, v, t, dt, scratch, out)
 
 
 @compiled

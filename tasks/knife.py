@@ -7,7 +7,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.base import CatalogueTask, flat_frame, run_kernel
+from tasks.base import CatalogueTask, run_kernel
 from tasks.evaluator import Code
 from tasks.kernels.pose import INFINITE, NO_ROTATION, take_pose
 from wbc import PD, Kernel, Robot, Rows, State
@@ -125,7 +125,7 @@ class KnifePose(CatalogueTask):
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
-        F = flat_frame(state.frame(self.frames[0]), state.robot.nv)
+        F = state.flat(self.frames[0])
         p = self._parameters
         if not self.rocking:
             run_kernel(Code.POSE, p, NO_TABLE, F, state, out)
