@@ -7,6 +7,16 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from tasks.kernels.compliance import (
+    FOLLOWING,
+    GAINS,
+    MEMORY,
+    SIZE,
+    admittance,
+    give_way,
+    impedance,
+)
+from tasks.kernels.touch import press
 from tasks.touch import TouchTask
 from wbc import PD, Rows, State
 from wbc.arrays import Array, frozen, positive
@@ -31,14 +41,13 @@ class _Compliant(TouchTask):
         sensor_frame: str,
         name: str,
     ) -> None:
-        super().__init__(name, "m", frame, 3, axes, sensor, sensor_frame)
+        super().__init__(name, "m", frame, 3, SIZE, axes, sensor, sensor_frame)
         mass, stiffness, damping = gains
         self.mass = _gain(mass, f"mass of '{name}'", zero=False)
         self.stiffness = _gain(stiffness, f"stiffness of '{name}'")
         critical = 2.0 * np.sqrt(self.mass * self.stiffness)
         given = critical if damping is None else damping
         self.damping = _gain(given, f"damping of '{name}'")
-        self._target = np.zeros((3, 3))
         self.set_target(target)
         self.set_force(force)
 
@@ -64,16 +73,18 @@ class _Compliant(TouchTask):
         Raises:
             InputError: not of shape (3,) or not finite; the force stays as it was.
         """
-        self._force = frozen(force, (3,), f"force of '{self.name}'")
+        self._force[:] = frozen(force, (3,), f"force of '{self.name}'")
 
     def reset(self) -> None:
         """Nothing is remembered."""
 
-    def _respond(self, error: Array, rate: Array, h: Array) -> Array:
-        """Acceleration (3,) of the mass under h, at x - x_d and its rate, all in D."""
-        pull = self._force - h - self.damping * rate - self.stiffness * error
-        acceleration: Array = self._R.T @ self._target[2] + pull / self.mass
-        return acceleration
+    def _parameters(self) -> Array:
+        """Numbers for the kernels, with the gains as they are now."""
+        p = self._numbers
+        p[GAINS : GAINS + 3] = self.mass
+        p[GAINS + 3 : GAINS + 6] = self.stiffness
+        p[GAINS + 6 : GAINS + 9] = self.damping
+        return p
 
 
 @final
@@ -120,20 +131,17 @@ class Impedance(_Compliant):
         name = name or f"{frame} impedance"
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.claims = (f"force of sensor '{sensor}'", f"moment of sensor '{sensor}'")
+        self._felt = np.zeros(6)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        F = self._kinematics(state, rows)
-        self._J, self._h = F.J, self._wrench(state, F)
-        rows.error[:] = self._R.T @ (F.p - self._target[0])
-        rows.rate[:] -= self._R.T @ self._target[1]
-        wish = self._respond(rows.error, rows.rate, self._R.T @ self._h[:3])
-        rows.lower[:] = rows.upper[:] = wish - rows.drift
+        self._listen(state)
+        F, S = state.flat(self.frame), state.flat(self.sensor_frame)
+        impedance(self._parameters(), F, S, self._wrench, self._felt, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Add J^T h to the torques."""
-        del state
-        torque += self._J.T @ self._h
+        press(state.flat(self.frame), self._felt, torque)
 
 
 @final
@@ -181,35 +189,24 @@ class Admittance(_Compliant):
         name = name or f"{frame} admittance"
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.following = PD(positive(following, "following"))
-        self.reset()
+        self._memory = np.zeros(MEMORY)
 
     def reset(self) -> None:
         """Let the reference start from where the robot is at the next tick."""
-        self._reference: tuple[Array, Array] | None = None
+        self._memory[:] = 0.0
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        F = self._kinematics(state, rows)
-        if self._reference is None:
-            self._reference = F.p.copy(), F.V[:3].copy()
-        x, v = self._reference
-        p_d, v_d, _ = self._target
-        error, rate = self._R.T @ (x - p_d), self._R.T @ (v - v_d)
-        h = self._R.T @ self._wrench(state, F)[:3]
-        self._acceleration = self._respond(error, rate, h)
-        rows.error[:] = self._R.T @ (F.p - x)
-        rows.rate[:] -= self._R.T @ v
-        wish = self.following.acceleration(rows.error, rows.rate)
-        rows.lower[:] = rows.upper[:] = self._acceleration + wish - rows.drift
+        self._listen(state)
+        p = self._parameters()
+        p[FOLLOWING : FOLLOWING + 3] = self.following.stiffness
+        p[FOLLOWING + 3 : FOLLOWING + 6] = self.following.damping
+        admittance(p, state.flat(self.frame), self._wrench, self._memory, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Move the reference on by one tick; not by what is not finite."""
         del torque
-        if self._reference is None or not np.isfinite(self._acceleration).all():
-            return
-        x, v = self._reference
-        v = v + state.dt * (self._R @ self._acceleration)
-        self._reference = x + state.dt * v, v
+        give_way(self._numbers, self._memory, state.dt)
 
 
 def _gain(value: ArrayLike, what: str, *, zero: bool = True) -> Array:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from tasks.base import CatalogueTask, run_kernel
 from tasks.evaluator import Code
 from tasks.kernels.pose import INFINITE, NO_ROTATION, take_pose
+from tasks.kernels.touch import press
 from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import Array
 from wbc.errors import InputError, UnknownName
@@ -70,7 +71,7 @@ class KnifePose(CatalogueTask):
         law = PD(stiffness, damping)
         super().__init__(name or f"{frame} knife pose", "m, rad", rows, law, (frame,))
         self.rocking, self.sensor, self.sensor_frame = rocking, sensor, sensor_frame
-        self._parameters = np.zeros(24)
+        self._parameters, self._wrench = np.zeros(24), np.zeros(6)
         self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
         self.set_target(position, orientation)
 
@@ -141,7 +142,8 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        torque += state.jacobian(self.sensor_frame).T @ measured
+        self._wrench[:] = measured
+        press(state.flat(self.sensor_frame), self._wrench, torque)
 
 
 def _numbers(value: ArrayLike) -> Array:
