@@ -28,6 +28,7 @@ from tasks.kernels.force import (
 from tasks.touch import TouchTask
 from wbc import PD, Robot, Rows, State
 from wbc.arrays import Array, frozen, per_row, positive, rotation
+from wbc.compiled import announce
 from wbc.errors import InputError
 
 __all__ = ["HybridForceMotion"]
@@ -177,6 +178,7 @@ class HybridForceMotion(TouchTask):
     def check(self, robot: Robot) -> None:
         """Frames exist, and gains are one number or one a row of their kind."""
         super().check(robot)
+        announce(move_and_press, f"'{self.name}'")
         for gain, rows in (
             (self.motion_law.stiffness, self._m),
             (self.motion_law.damping, self._m),

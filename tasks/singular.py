@@ -9,6 +9,7 @@ import numpy as np
 from tasks.kernels.singular import damp_lost, work_size
 from wbc import PD, InputError, MotionTask, Robot, Rows, SaturatedPD, State, Task
 from wbc.arrays import Array, positive
+from wbc.compiled import announce
 from wbc.rows import allocate_rows
 
 __all__ = ["SingularDamping"]
@@ -79,6 +80,7 @@ class SingularDamping(Task):
         """The task fits the robot, and its law is one of the two."""
         self.task.check(robot)
         self._law()
+        announce(damp_lost, f"'{self.name}'")
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
