@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tasks import Clearance, Damping, FramePose, Posture
@@ -15,7 +16,7 @@ from tests.property.formulas import (
     rows_of,
     same,
 )
-from wbc import Hierarchy, SaturatedPD, Task, allocate_rows, resolve
+from wbc import Hierarchy, InputError, SaturatedPD, Task, allocate_rows, resolve
 from wbc.compiled import python
 from wbc.frames import frame_at
 from wbc.stack import Stack
@@ -110,6 +111,8 @@ def test_a_clearance_is_the_same_in_any_axes_alone_and_in_a_stack(robot):
         task = Clearance(TIPS[robot], second, distance, rate=rate)
         stack = Stack(arm, Hierarchy.of(task >> Damping()))
         assert stack.terms[0].kernel is not None
+        with pytest.raises(InputError, match="'distance' of task"):
+            task.distance = 1.0
         for _ in range(SEEDS):
             state = random_state(arm, rng)
             stack.update(state)
