@@ -6,16 +6,24 @@ from abc import abstractmethod
 
 import numpy as np
 
-from tasks.evaluator import SCRATCH, Code, evaluate, run
-from wbc import PD, Damper, FrameState, Kernel, MotionTask, Robot, Rows, State
+from tasks.evaluator import SCRATCH, Code, evaluate_alone, run
+from wbc import (
+    PD,
+    Damper,
+    Kernel,
+    MotionTask,
+    Robot,
+    Rows,
+    SaturatedPD,
+    State,
+)
 from wbc.arrays import Array, IntArray
-from wbc.compiled import python
-from wbc.frames import frame_at, frame_size
+from wbc.frames import frame_size
 from wbc.kernel import NO_TABLE, WORLD
 from wbc.relative import moved, relative
 from wbc.settled import Settled
 
-__all__ = ["CatalogueTask", "flat_frame", "run_kernel"]
+__all__ = ["CatalogueTask", "run_kernel"]
 
 
 class CatalogueTask(Settled, MotionTask):
@@ -49,17 +57,19 @@ class CatalogueTask(Settled, MotionTask):
 
     def kernel(self, robot: Robot) -> Kernel | None:
         """The compiled half; None where the law is not one that is compiled."""
-        if not isinstance(self.law, PD | Damper):
+        law = self.law
+        if not isinstance(law, PD | Damper | SaturatedPD):
             return None
         m = len(self.row_names(robot))
-        stiffness = self.law.stiffness if isinstance(self.law, PD) else np.zeros(())
+        stiffness = np.zeros(()) if isinstance(law, Damper) else law.stiffness
         return Kernel(
             run,
             int(self.code),
             self.live_parameters(robot),
             self.table(robot),
             np.broadcast_to(stiffness, (m,)),
-            np.broadcast_to(self.law.damping, (m,)),
+            np.broadcast_to(law.damping, (m,)),
+            law.gains if isinstance(law, SaturatedPD) else None,
             self.joint_indices(robot),
             self.moving,
         )
@@ -74,9 +84,11 @@ class CatalogueTask(Settled, MotionTask):
         """The task's frame, as seen from its second one if it has two."""
         n, flat = state.robot.nv, []
         for name in self.frames:
-            flat.append(flat_frame(state.frame(name), n))
             if name == WORLD and self.moving is not None:
+                flat.append(np.zeros(frame_size(n)))
                 moved(self.moving, state.t, flat[-1])
+            else:
+                flat.append(state.flat(name))
         if len(flat) == 2:
             seen = np.zeros(frame_size(n))
             relative(flat[0], flat[1], seen, np.zeros(SCRATCH), n)
@@ -94,11 +106,11 @@ def run_kernel(
 ) -> None:
     """Write one task's rows at a state; F is a flat frame."""
     n = state.robot.nv
-    evaluate(
+    evaluate_alone(
         int(code),
         np.array(parameters),  # one memory layout, so that one compilation serves all
         np.array(table),
-        python(frame_at)(np.zeros(frame_size(n)) if F is None else F, n),
+        np.zeros(frame_size(n)) if F is None else F,
         np.array(state.q),
         np.array(state.v),
         state.t,
@@ -106,11 +118,3 @@ def run_kernel(
         np.zeros(SCRATCH + n),
         out,
     )
-
-
-def flat_frame(F: FrameState, n: int) -> Array:
-    """A frame as kernels lay it out."""
-    flat = np.empty(frame_size(n))
-    for target, source in zip(python(frame_at)(flat, n), F, strict=True):
-        target[:] = source
-    return flat

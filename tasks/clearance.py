@@ -6,16 +6,17 @@ from typing import final
 
 import numpy as np
 
-from wbc import Robot, Rows, State, Task
-from wbc.arrays import positive
+from tasks.base import run_kernel
+from tasks.evaluator import SCRATCH, Code, run
+from wbc import Kernel, Robot, Rows, State, Task
+from wbc.arrays import Array, positive
 from wbc.checks import named, text
 from wbc.errors import InputError
+from wbc.kernel import NO_TABLE
+from wbc.relative import relative
 from wbc.settled import Settled
 
 __all__ = ["Clearance"]
-
-CONTACT = 1e-9
-"""Distance below which two points have no direction between them [m]."""
 
 
 @final
@@ -60,17 +61,17 @@ class Clearance(Settled, Task):
         del robot
         return ("distance",)
 
+    def _parameters(self) -> Array:
+        return np.array([self.distance, self.rate])
+
+    def kernel(self, robot: Robot) -> Kernel:
+        """The compiled half."""
+        del robot
+        return Kernel(run, int(Code.CLEARANCE), self._parameters())
+
     def update(self, state: State, rows: Rows) -> None:
         """Write the row."""
-        A, B = (state.frame(name) for name in self.frames)
-        apart, v = A.p - B.p, A.V[:3] - B.V[:3]
-        d = float(np.sqrt(apart @ apart))
-        n = apart / d if d > CONTACT else np.eye(3)[2]
-        along = float(n @ v)
-        spare = d - self.distance
-        rows.A[0] = n @ (A.J[:3] - B.J[:3])
-        rows.error[0], rows.rate[0] = min(spare, 0.0), along
-        turning = (v @ v - along * along) / max(d, CONTACT)
-        rows.drift[0] = n @ (A.drift[:3] - B.drift[:3]) + turning
-        wanted = -2.0 * self.rate * along - self.rate**2 * spare
-        rows.lower[0], rows.upper[0] = wanted - rows.drift[0], np.inf
+        first, second = (state.flat(name) for name in self.frames)
+        seen = np.zeros(first.size)
+        relative(first, second, seen, np.zeros(SCRATCH), state.robot.nv)
+        run_kernel(Code.CLEARANCE, self._parameters(), NO_TABLE, seen, state, rows)

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from tasks.kernels.clearance import clearance
 from tasks.kernels.constraints import constraint
 from tasks.kernels.joints import at_rest, at_target, joint_bounds, torque_bounds
 from tasks.kernels.paths import SCRATCH, along_path, on_curve, speed
 from tasks.kernels.points import on_point
 from tasks.kernels.rotations import along, orientation, pose
 from wbc import slots
+from wbc.approach import approach
 from wbc.arrays import Array, IntArray
 from wbc.assembly import measured
 from wbc.compiled import compiled, inner
 from wbc.frames import FrameState, frame_at, update_frame
 from wbc.pointers import floats_at, integers_at, matrix
+from wbc.program import ENTRY
 from wbc.relative import MOVING_SIZE, moved, relative
 from wbc.rows import Rows
 from wbc.tick import conclude
 from wbc.vectors import dot
 
-__all__ = ["SCRATCH", "Code", "evaluate", "run"]
+__all__ = ["SCRATCH", "Code", "evaluate", "evaluate_alone", "run"]
 
 
 class Code(IntEnum):
@@ -38,6 +41,7 @@ class Code(IntEnum):
     AT_REST = 9
     JOINT_BOUNDS = 10
     TORQUE_BOUNDS = 11
+    CLEARANCE = 12
 
 
 @compiled
@@ -92,6 +96,26 @@ def evaluate(
         joint_bounds(p, table, q, v, dt, out)
     elif code == 11:
         torque_bounds(p, out)
+    elif code == 12:
+        clearance(p, F, out)
+
+
+@compiled
+def evaluate_alone(
+    code: int,
+    p: Array,
+    table: Array,
+    flat: Array,
+    q: Array,
+    v: Array,
+    t: float,
+    dt: float,
+    scratch: Array,
+    out: Rows,
+) -> None:
+    """The same for a flat frame (24 + 6 n,), with fewer arrays to hand over."""
+    F = frame_at(flat, q.size)
+    evaluate(code, p, table, F, q, v, t, dt, scratch, out)
 
 
 @compiled
@@ -113,7 +137,7 @@ def run(table: IntArray, q: Array, v: Array, t: float, dt: float, out: Array) ->
     for i in range(f):
         update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch[1], n)
     _write_rows(
-        matrix(integers_at(table[slots.PROGRAM], tasks * 10), tasks, 10),
+        matrix(integers_at(table[slots.PROGRAM], tasks * ENTRY), tasks, ENTRY),
         matrix(floats_at(table[slots.GAINS], 2 * m), 2, m),
         blocks,
         scratch,
@@ -143,10 +167,10 @@ def _write_rows(
     """The rows of all tasks, and the accelerations that their laws want of them.
 
     Args:
-        program: (k, 10) for each task: code, frame, first row, end, address and size of
+        program: (k, 11) for each task: code, frame, first row, end, address and size of
             parameters, address and size of the table, second frame (-1 for none),
             address of a frame that moves by itself (0 for none; it takes the place of
-            the frame that is -2).
+            the frame that is -2), address of the gains of `approach` (0 for none).
         gains: (2, m) stiffness and damping of every row; negative for bounds.
         blocks: the frames, flat.
         scratch: (4, 96 + 6 n) numbers on the way; the last row starts as zeros.
@@ -178,6 +202,11 @@ def _write_rows(
                 bands[1, i] += dot(A[i], v, 0, n)
                 wish = gains[0, i] * bands[0, i] + gains[1, i] * bands[1, i]
                 bands[3, i] = bands[4, i] = -wish - bands[2, i]
+        if program[k, 10] != 0:
+            approach(out.error, out.rate, floats_at(program[k, 10], 4), out.upper)
+            for i in range(begin, end):
+                bands[4, i] -= bands[2, i]
+                bands[3, i] = bands[4, i]
 
 
 @inner

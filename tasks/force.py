@@ -6,16 +6,30 @@ from collections.abc import Sequence
 from typing import final
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from tasks.contact import Contact
 from tasks.forcelaw import ForceLaw
-from tasks.memory import Felt
+from tasks.kernels.force import (
+    APPROACH,
+    DAMPING,
+    FELT,
+    FORCE_DAMPING,
+    HELD,
+    MEMORY,
+    PLACE,
+    SELECTION,
+    SIZE,
+    STIFFNESS,
+    lean,
+    move_and_press,
+    work_size,
+)
 from tasks.touch import TouchTask
-from wbc import PD, FrameState, Robot, Rows, State
+from wbc import PD, Robot, Rows, State
 from wbc.arrays import Array, frozen, numbers, per_row, positive, rotation
 from wbc.checks import expect, named
+from wbc.compiled import announce
 from wbc.errors import InputError, shown
 
 __all__ = ["HybridForceMotion"]
@@ -81,7 +95,9 @@ class HybridForceMotion(TouchTask):
     ) -> None:
         name = named(name, f"{frame} hybrid")
         S = _selection(selection, name)
-        super().__init__(name, "m, N", frame, S.size, axes, sensor, sensor_frame)
+        super().__init__(name, "m, N", frame, S.size, SIZE, axes, sensor, sensor_frame)
+        self._numbers[SELECTION : SELECTION + S.size] = S
+        self._S = S
         self.claims = tuple(
             f"{kind} of sensor '{sensor}'"
             for kind, rows in (("force", S[:3]), ("moment", S[3:]))
@@ -94,7 +110,8 @@ class HybridForceMotion(TouchTask):
         self.force_damping = per_row(force_damping, "force_damping")
         self.approach = positive(approach, "approach", zero=True)
         self._contact = Contact(threshold)
-        self._target = np.zeros((3, 6))
+        self._memory, self._work = np.zeros((MEMORY, 6)), np.zeros(0)
+        self._held = self._memory[HELD, : self._f.size]
         if S.size == 6 and orientation is None:
             raise InputError(f"'{name}' has six rows: give it an orientation.")
         self.set_target(target, orientation)
@@ -117,8 +134,8 @@ class HybridForceMotion(TouchTask):
         v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
         a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
         if orientation is not None:
-            self._R_d = rotation(orientation, f"orientation of '{self.name}'")
-        self._target[:, :3] = p, v, a
+            self._R_d[:] = rotation(orientation, f"orientation of '{self.name}'")
+        self._target[:] = p, v, a
 
     def set_force(self, force: ArrayLike) -> None:
         """Change F_d, (3,) or (6,) in D; motion rows ignore theirs.
@@ -126,23 +143,23 @@ class HybridForceMotion(TouchTask):
         Raises:
             InputError: not one number a row, or not finite; the force stays as it was.
         """
-        self._force = frozen(force, (self.size,), f"force of '{self.name}'")
+        self._force[:] = frozen(force, (self.size,), f"force of '{self.name}'")
 
     def reset(self) -> None:
         """Forget the integral term and the contact."""
         self._contact.reset()
-        none, p = np.zeros(self._f.size), self._target[0, :3].copy()
-        self._now = Felt(np.zeros((0, 0)), np.zeros(6), none, none, none, p)
+        self._memory[:], self._size = 0.0, 0.0
+        self._memory[PLACE, :3] = self._target[0]
 
     @property
     def felt(self) -> Array:
         """Wrench (6,) on the surroundings about F's origin, at the last tick, world."""
-        return self._now.wrench.copy()
+        return np.array(self._memory[FELT])
 
     @property
     def position(self) -> Array:
         """Where F's origin was at the last tick, (3,) [m]."""
-        return self._now.p.copy()
+        return np.array(self._memory[PLACE, :3])
 
     @property
     def touching(self) -> bool:
@@ -163,6 +180,7 @@ class HybridForceMotion(TouchTask):
     def check(self, robot: Robot) -> None:
         """Frames exist, and gains are one number or one a row of their kind."""
         super().check(robot)
+        announce(move_and_press, f"'{self.name}'")
         for gain, rows in (
             (self.motion_law.stiffness, self._m),
             (self.motion_law.damping, self._m),
@@ -182,62 +200,44 @@ class HybridForceMotion(TouchTask):
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        F = self._kinematics(state, rows)
-        self._motion(F, rows)
+        F = S = state.flat(self.frame)
         if self._f.size:
-            self._press(state, F, rows)
-        rows.upper[:] = rows.lower
+            self._listen(state)
+            S = state.flat(self.sensor_frame)
+        if self._work.size != work_size(state.robot.nv):
+            self._work = np.zeros(work_size(state.robot.nv))
+        self._size = move_and_press(
+            self._parameters(),
+            F,
+            S,
+            self._wrench,
+            state.M,
+            self._memory,
+            self._work,
+            self.law.proportional,
+            self.law.integral,
+            self._contact.touching,
+            rows,
+        )
 
     def advance(self, state: State, torque: Array) -> None:
         """Add J_f^T F_s to the torques, and move on contact and integral term."""
-        if not self._f.size:
+        count, touching = self._f.size, self._contact.touching
+        if not count:
             return
-        now = self._now
-        if self._contact.touching:
-            torque += now.J.T @ now.measured
-        now.held = self.law.integrate(now.held, now.rate, state.dt)
-        size = float(np.linalg.norm(now.measured))
-        if self._contact.feel(size, state.dt) and self.law.integral == 0.0:
-            now.held[:] = 0.0  # nothing would unlearn it
+        F, limit = state.flat(self.frame), self.law.limit
+        lean(F, self._memory, count, touching, state.dt, limit, torque)
+        if self._contact.feel(self._size, state.dt) and self.law.integral == 0.0:
+            self._held[:] = 0.0  # nothing would unlearn it
 
-    def _motion(self, F: FrameState, rows: Rows) -> None:
-        p, v, a = self._target
-        error, self._now.p = np.zeros(6), F.p
-        error[:3] = F.p - p[:3]
-        if self.size == 6:
-            error[3:] = pin.log3(F.R @ self._R_d.T)
-        rows.error[:] = self._split(error)
-        rows.rate[:] -= self._split(v)
-        m = self._m
-        wish = self.motion_law.acceleration(rows.error[m], rows.rate[m])
-        rows.lower[m] = self._split(a)[m] + wish - rows.drift[m]
-
-    def _press(self, state: State, F: FrameState, rows: Rows) -> None:
-        f, now = self._f, self._now
-        now.J = J = rows.A[f]
-        now.wrench = self._wrench(state, F)
-        now.measured = measured = self._split(now.wrench)[f]
-        speed, desired = self._split(F.V)[f], self._force[f]
-        mobility = J @ np.linalg.solve(state.M, J.T)
-        rows.rate[f] = 0.0
-        rows.error[f] = measured - desired
-        if self._contact.touching:
-            wish = self.law.command(desired, measured, now.held)
-            acceleration = mobility @ (wish - measured)
-            acceleration -= self.force_damping * speed
-            now.rate = self.law.integral * (desired - measured)
-        else:
-            late = self._search_velocity(desired) - speed
-            acceleration = self.force_damping * late + mobility @ now.held
-            pull = self.force_damping**2 / 4.0 * late  # critically damped
-            now.rate = np.array(np.linalg.lstsq(mobility, pull, rcond=1e-9)[0])
-        rows.lower[f] = acceleration - rows.drift[f]
-
-    def _search_velocity(self, desired: Array) -> Array:
-        """Of the force rows before contact: along F_d, angular ones at rest."""
-        linear = np.where(self._f < 3, desired, 0.0)
-        size = float(np.linalg.norm(linear))
-        return self.approach / size * linear if size > 0.0 else linear
+    def _parameters(self) -> Array:
+        """Numbers for the kernels, with the gains as they are now."""
+        p, moving, pressing = self._numbers, self._m.size, self._f.size
+        p[STIFFNESS : STIFFNESS + moving] = self.motion_law.stiffness
+        p[DAMPING : DAMPING + moving] = self.motion_law.damping
+        p[FORCE_DAMPING : FORCE_DAMPING + pressing] = self.force_damping
+        p[APPROACH] = self.approach
+        return p
 
 
 def _selection(selection: Sequence[int], task: str) -> Array:

@@ -6,6 +6,7 @@ from typing import final
 
 import numpy as np
 
+from tasks.kernels.forcelaw import command, integrate
 from wbc.arrays import Array, positive
 from wbc.errors import InputError
 
@@ -43,12 +44,15 @@ class ForceLaw:
 
     def command(self, desired: Array, measured: Array, held: Array) -> Array:
         """F* (m,) for F_d (m,), F_s (m,) and the integral term (m,)."""
-        return desired + self.proportional * (desired - measured) + held
+        out = np.empty(held.size)
+        command(self.proportional, desired, measured, held, out)
+        return out
 
     def integrate(self, held: Array, rate: Array, dt: float) -> Array:
         """The integral term (m,) after dt [s] at a rate [N/s]; kept if that is NaN."""
-        moved = np.clip(held + dt * rate, -self.limit, self.limit)
-        return np.where(np.isfinite(moved), moved, held)
+        moved = np.array(held)
+        integrate(moved, rate, dt, self.limit)
+        return moved
 
     def __repr__(self) -> str:
         return f"ForceLaw({self.proportional}, {self.integral}, {self.limit})"

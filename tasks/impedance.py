@@ -7,7 +7,16 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.memory import Pushed, Reference
+from tasks.kernels.compliance import (
+    FOLLOWING,
+    GAINS,
+    MEMORY,
+    SIZE,
+    admittance,
+    give_way,
+    impedance,
+)
+from tasks.kernels.touch import press
 from tasks.touch import TouchTask
 from wbc import PD, Rows, State
 from wbc.arrays import Array, frozen, numbers, positive
@@ -33,14 +42,13 @@ class _Compliant(TouchTask):
         sensor_frame: str,
         name: str,
     ) -> None:
-        super().__init__(name, "m", frame, 3, axes, sensor, sensor_frame)
+        super().__init__(name, "m", frame, 3, SIZE, axes, sensor, sensor_frame)
         mass, stiffness, damping = gains
         self.mass = _gain(mass, f"mass of '{name}'", zero=False)
         self.stiffness = _gain(stiffness, f"stiffness of '{name}'")
         critical = 2.0 * np.sqrt(self.mass * self.stiffness)
         given = critical if damping is None else damping
         self.damping = _gain(given, f"damping of '{name}'")
-        self._target = np.zeros((3, 3))
         self.set_target(target)
         self.set_force(force)
 
@@ -66,16 +74,18 @@ class _Compliant(TouchTask):
         Raises:
             InputError: not of shape (3,) or not finite; the force stays as it was.
         """
-        self._force = frozen(force, (3,), f"force of '{self.name}'")
+        self._force[:] = frozen(force, (3,), f"force of '{self.name}'")
 
     def reset(self) -> None:
         """Nothing is remembered."""
 
-    def _respond(self, error: Array, rate: Array, h: Array) -> Array:
-        """Acceleration (3,) of the mass under h, at x - x_d and its rate, all in D."""
-        pull = self._force - h - self.damping * rate - self.stiffness * error
-        acceleration: Array = self._R.T @ self._target[2] + pull / self.mass
-        return acceleration
+    def _parameters(self) -> Array:
+        """Numbers for the kernels, with the gains as they are now."""
+        p = self._numbers
+        p[GAINS : GAINS + 3] = self.mass
+        p[GAINS + 3 : GAINS + 6] = self.stiffness
+        p[GAINS + 6 : GAINS + 9] = self.damping
+        return p
 
 
 @final
@@ -122,22 +132,17 @@ class Impedance(_Compliant):
         name = named(name, f"{frame} impedance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.claims = (f"force of sensor '{sensor}'", f"moment of sensor '{sensor}'")
-        self._now = Pushed(np.zeros((6, 0)), np.zeros(6))
+        self._felt = np.zeros(6)
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        F = self._kinematics(state, rows)
-        now = self._now
-        now.J, now.wrench = F.J, self._wrench(state, F)
-        rows.error[:] = self._R.T @ (F.p - self._target[0])
-        rows.rate[:] -= self._R.T @ self._target[1]
-        wish = self._respond(rows.error, rows.rate, self._R.T @ now.wrench[:3])
-        rows.lower[:] = rows.upper[:] = wish - rows.drift
+        self._listen(state)
+        F, S = state.flat(self.frame), state.flat(self.sensor_frame)
+        impedance(self._parameters(), F, S, self._wrench, self._felt, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Add J^T h to the torques."""
-        del state
-        torque += self._now.J.T @ self._now.wrench
+        press(state.flat(self.frame), self._felt, torque)
 
 
 @final
@@ -185,36 +190,24 @@ class Admittance(_Compliant):
         name = named(name, f"{frame} admittance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.following = PD(positive(following, "following"))
-        self.reset()
+        self._memory = np.zeros(MEMORY)
 
     def reset(self) -> None:
         """Let the reference start from where the robot is at the next tick."""
-        self._reference: Reference | None = None
+        self._memory[:] = 0.0
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        F = self._kinematics(state, rows)
-        if self._reference is None:
-            self._reference = Reference(F.p.copy(), F.V[:3].copy(), np.zeros(3))
-        now = self._reference
-        x, v = now.x, now.v
-        p_d, v_d, _ = self._target
-        error, rate = self._R.T @ (x - p_d), self._R.T @ (v - v_d)
-        h = self._R.T @ self._wrench(state, F)[:3]
-        now.acceleration = self._respond(error, rate, h)
-        rows.error[:] = self._R.T @ (F.p - x)
-        rows.rate[:] -= self._R.T @ v
-        wish = self.following.acceleration(rows.error, rows.rate)
-        rows.lower[:] = rows.upper[:] = now.acceleration + wish - rows.drift
+        self._listen(state)
+        p = self._parameters()
+        p[FOLLOWING : FOLLOWING + 3] = self.following.stiffness
+        p[FOLLOWING + 3 : FOLLOWING + 6] = self.following.damping
+        admittance(p, state.flat(self.frame), self._wrench, self._memory, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Move the reference on by one tick; not by what is not finite."""
         del torque
-        now = self._reference
-        if now is None or not np.isfinite(now.acceleration).all():
-            return
-        now.v = now.v + state.dt * (self._R @ now.acceleration)
-        now.x = now.x + state.dt * now.v
+        give_way(self._numbers, self._memory, state.dt)
 
 
 def _gain(value: ArrayLike, what: str, *, zero: bool = True) -> Array:

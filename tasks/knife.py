@@ -7,8 +7,9 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.base import CatalogueTask, flat_frame, run_kernel
+from tasks.base import CatalogueTask, run_kernel
 from tasks.evaluator import Code
+from tasks.kernels.touch import press
 from tasks.target import POSE, STILL, take_target
 from wbc import PD, Kernel, Robot, Rows, State
 from wbc.arrays import Array
@@ -71,7 +72,7 @@ class KnifePose(CatalogueTask):
         self.rocking = rocking
         self.sensor = None if sensor is None else text(sensor, f"sensor of '{name}'")
         self.sensor_frame = text(sensor_frame, f"sensor_frame of '{name}'")
-        self._parameters = np.zeros(24)
+        self._parameters, self._wrench = np.zeros(24), np.zeros(6)
         self._axis = np.concatenate([NORMAL, ACROSS, DOWN, np.zeros(9)])
         self.set_target(position, orientation)
 
@@ -111,7 +112,7 @@ class KnifePose(CatalogueTask):
 
     def evaluate(self, state: State, out: Rows) -> None:
         """Write the rows."""
-        F = flat_frame(state.frame(self.frames[0]), state.robot.nv)
+        F = state.flat(self.frames[0])
         p = self._parameters
         if not self.rocking:
             run_kernel(Code.POSE, p, NO_TABLE, F, state, out)
@@ -127,7 +128,8 @@ class KnifePose(CatalogueTask):
         measured = state.wrenches.get(self.sensor)
         if measured is None:
             raise UnknownName("force sensor", self.sensor, state.wrenches)
-        torque += state.jacobian(self.sensor_frame).T @ measured
+        self._wrench[:] = measured
+        press(state.flat(self.sensor_frame), self._wrench, torque)
 
 
 def _part(rows: Rows, begin: int, end: int) -> Rows:

@@ -6,13 +6,17 @@ from typing import final
 
 import numpy as np
 
+from tasks.kernels.singular import damp_lost, work_size
 from wbc import PD, InputError, MotionTask, Robot, Rows, SaturatedPD, State, Task
 from wbc.arrays import Array, positive
 from wbc.checks import expect
+from wbc.compiled import announce
 from wbc.rows import allocate_rows
 from wbc.settled import Settled
 
 __all__ = ["SingularDamping"]
+
+TINY = float(np.finfo(float).tiny)
 
 
 @final
@@ -69,6 +73,7 @@ class SingularDamping(Settled, Task):
         self.threshold = positive(threshold, "threshold")
         self.factor = positive(factor, "factor")
         self.bend = positive(bend, "bend")
+        self._seen, self._work = allocate_rows(0, 0), np.zeros(0)
 
     def row_names(self, robot: Robot) -> tuple[str, ...]:
         """One a direction of the joints, from the task's strongest to its weakest."""
@@ -78,28 +83,38 @@ class SingularDamping(Settled, Task):
         """The task fits the robot, and its law is one of the two."""
         self.task.check(robot)
         self._law()
+        announce(damp_lost, f"'{self.name}'")
 
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
-        seen = allocate_rows(len(self.task.row_names(state.robot)), state.robot.nv)
+        law, (m, n) = self._law(), self._sizes(state.robot)
+        if self._seen.A.shape != (m, n):
+            self._seen, self._work = allocate_rows(m, n), np.zeros(work_size(m, n))
+        seen = self._seen
+        for array in seen:
+            array[:] = 0.0
         self.task.evaluate(state, seen)
-        _, s, Vt = np.linalg.svd(seen.A)
-        size = float(np.linalg.norm(s)) or 1.0
-        s = np.append(s, np.full(state.robot.nv - s.size, s[-1]))
-        fade = np.maximum(1.0 - (s / (self.threshold * size)) ** 2, 0.0)
-        square = (self.factor * size) ** 2 + self.bend * size * self._error(seen)
-        rows.A[:] = np.sqrt(square * fade)[:, None] * Vt
-        rows.rate[:] = rows.error[:] = rows.A @ state.v
-        rows.drift[:] = 0.0
-        damping = float(np.max(self._law().damping))
-        rows.upper[:] = rows.lower[:] = -damping * rows.rate
+        damp_lost(
+            seen.A,
+            np.array(state.v),  # one memory layout, so that one compilation serves all
+            self.threshold,
+            self.factor,
+            self.bend,
+            float(law.damping.max()),
+            self._error(law, seen.error),
+            self._work,
+            rows,
+        )
 
-    def _error(self, seen: Rows) -> float:
+    def _sizes(self, robot: Robot) -> tuple[int, int]:
+        """Numbers of the task's rows and of the joints."""
+        return len(self.task.row_names(robot)), robot.nv
+
+    def _error(self, law: PD | SaturatedPD, error: Array) -> float:
         """Norm of the error, no larger than a law that saturates takes it."""
-        law = self._law()
-        wish: Array = law.acceleration(seen.error, np.zeros_like(seen.error))
-        stiffness = max(float(np.max(law.stiffness)), np.finfo(float).tiny)
-        return float(np.linalg.norm(wish)) / stiffness
+        wish = law.acceleration(error, np.zeros(error.size))
+        stiffness = max(float(law.stiffness.max()), TINY)
+        return float(np.sqrt(wish @ wish)) / stiffness
 
     def _law(self) -> PD | SaturatedPD:
         law = self.task.law

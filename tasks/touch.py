@@ -7,8 +7,8 @@ from abc import abstractmethod
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.kernels.touch import in_axes
-from wbc import FrameState, Robot, Rows, State, Task
+from tasks.kernels.touch import FORCE, TARGET, TARGET_ROTATION
+from wbc import Robot, State, Task
 from wbc.arrays import Array, rotation
 from wbc.checks import text
 from wbc.errors import InputError, SolverError
@@ -30,6 +30,7 @@ class TouchTask(Settled, Task):
         unit: of each row's error.
         frame: name of F.
         rows: 3 for the linear rows alone, 6 with the angular ones.
+        numbers: how many its kernels read (`tasks.kernels.touch`).
         axes: (3, 3) R_WD; the world's by default.
         sensor: name of the force sensor in `State.wrenches`.
         sensor_frame: where it sits on the robot; its wrench is about this point.
@@ -38,15 +39,13 @@ class TouchTask(Settled, Task):
         InputError: the axes are no rotation; at the first tick, the sensor is missing.
     """
 
-    _target: Array
-    _force: Array
-
     def __init__(
         self,
         name: str,
         unit: str,
         frame: str,
         rows: int,
+        numbers: int,
         axes: ArrayLike | None,
         sensor: str,
         sensor_frame: str,
@@ -55,7 +54,13 @@ class TouchTask(Settled, Task):
         super().__init__(name, unit, (frame, sensor_frame))
         self.frame, self.sensor = frame, text(sensor, f"sensor of '{name}'")
         self.size = rows
-        self._R, self._R_d, self._heard = np.eye(3), np.eye(3), False
+        self._numbers, self._wrench = np.zeros(numbers), np.zeros(6)
+        self._R = self._numbers[:TARGET].reshape(3, 3)
+        self._target = self._numbers[TARGET:TARGET_ROTATION].reshape(3, 3)
+        self._R_d = self._numbers[TARGET_ROTATION:FORCE].reshape(3, 3)
+        self._force = self._numbers[FORCE : FORCE + rows]
+        self._R[:] = self._R_d[:] = np.eye(3)
+        self._heard = False
         if axes is not None:
             self.set_axes(axes)
 
@@ -65,7 +70,7 @@ class TouchTask(Settled, Task):
         Raises:
             InputError: no rotation; the axes stay as they were.
         """
-        self._R = np.array(rotation(axes, f"axes of '{self.name}'"))
+        self._R[:] = rotation(axes, f"axes of '{self.name}'")
 
     @property
     def axes(self) -> Array:
@@ -75,7 +80,7 @@ class TouchTask(Settled, Task):
     @property
     def target(self) -> Array:
         """Where F's origin should be in the directions that move, (3,) [m]."""
-        return self._target[0, :3].copy()
+        return np.array(self._target[0])
 
     @property
     def orientation(self) -> Array:
@@ -101,24 +106,8 @@ class TouchTask(Settled, Task):
     def reset(self) -> None:
         """Forget what was remembered of earlier ticks."""
 
-    def _split(self, twist: Array) -> Array:
-        """A twist, wrench or drift (6,) as rows in D, (m,)."""
-        return (twist.reshape(2, 3) @ self._R).ravel()[: self.size]
-
-    def _join(self, rows: Array) -> Array:
-        """Rows in D (m,) as a wrench (6,) in world axes."""
-        wrench = np.zeros(6)
-        wrench[: self.size] = (rows.reshape(-1, 3) @ self._R.T).ravel()
-        return wrench
-
-    def _kinematics(self, state: State, rows: Rows) -> FrameState:
-        """Write A and drift, and the rates of a target at rest."""
-        F = state.frame(self.frame)
-        in_axes(self._R, F.J, F.V, F.drift, rows.A, rows.rate, rows.drift)
-        return F
-
-    def _wrench(self, state: State, F: FrameState) -> Array:
-        """Measured wrench (6,) about F's origin, of the robot ON its surroundings.
+    def _listen(self, state: State) -> None:
+        """Take the measured wrench (6,) of the robot ON its surroundings.
 
         Raises:
             InputError: the sensor never was there.
@@ -134,12 +123,5 @@ class TouchTask(Settled, Task):
                 f"controller was told of: {known}. Pass wrenches={{'{self.sensor}': "
                 "...}, or name another one with sensor=..."
             )
-        if not self._heard:
-            self._heard = True
-        f0, f1, f2 = measured[:3].tolist()
-        a0, a1, a2 = (state.position(self.sensor_frame) - F.p).tolist()
-        wrench = measured.copy()
-        wrench[3] += a1 * f2 - a2 * f1
-        wrench[4] += a2 * f0 - a0 * f2
-        wrench[5] += a0 * f1 - a1 * f0
-        return wrench
+        self._heard = True
+        self._wrench[:] = measured

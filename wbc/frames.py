@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from wbc.arrays import Array, IntArray
-from wbc.compiled import inner
+from wbc.compiled import compiled, inner
 from wbc.pointers import address_of, floats_at
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
 
 POINTERS = 6
 """Addresses of a frame: R, p, v, omega, a, alpha of its joint."""
+SCRATCH = 24
 
 
 class FrameState(NamedTuple):
@@ -78,7 +79,9 @@ class Frames:
         jacobian: address of the joints' Jacobian.
     """
 
-    __slots__ = ("_alive", "blocks", "constants", "jacobian", "names", "pointers")
+    __slots__ = (
+        "_alive", "_spare", "blocks", "constants", "jacobian", "names", "pointers",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -92,6 +95,7 @@ class Frames:
         self.blocks = np.zeros((f, frame_size(n)))
         self.pointers = np.zeros((f, POINTERS), np.int_)
         self.constants = np.zeros((f, 15 + n))
+        self._spare = np.zeros(SCRATCH)
         self._alive: list[Any] = [data, data.J]
         self.jacobian = address_of(data.J)
         for i, index in enumerate(indices):
@@ -113,6 +117,22 @@ class Frames:
             constants[9:12] = frame.placement.translation
             constants[12:15] = model.gravity.linear
             constants[[14 + j for j in model.supports[joint] if j > 0]] = 1.0
+
+    def update(self) -> Array:
+        """Rewrite the blocks; returns them."""
+        blocks, pointers, constants = self.blocks, self.pointers, self.constants
+        _update_all(blocks, pointers, constants, self.jacobian, self._spare)
+        return blocks
+
+
+@compiled
+def _update_all(
+    blocks: Array, pointers: IntArray, constants: Array, jacobian: int, scratch: Array
+) -> None:
+    """Write the blocks of all frames."""
+    n = constants.shape[1] - 15
+    for i in range(blocks.shape[0]):
+        update_frame(blocks[i], pointers[i], constants[i], jacobian, scratch, n)
 
 
 @inner

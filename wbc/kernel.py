@@ -30,6 +30,7 @@ class Kernel:
             them in place, as a moving target does.
         table: more of them, such as the pieces of a curve.
         stiffness, damping: (m,) of a PD law; None for rows that are bounds.
+        approach: (4,) gains of `wbc.approach`, for a law that bounds its speed.
         joints: (m,) for rows that are 1 at one joint and 0 elsewhere: its index.
         moving: (26,) a frame that moves by itself, for `wbc.relative.moved`; it takes
             the place of the world among the task's two frames.
@@ -41,5 +42,6 @@ class Kernel:
     table: Array = field(default_factory=lambda: NO_TABLE)
     stiffness: Array | None = None
     damping: Array | None = None
+    approach: Array | None = None
     joints: IntArray | None = None
     moving: Array | None = None

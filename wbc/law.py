@@ -8,10 +8,13 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, per_row, positive
+from wbc.approach import approach
+from wbc.arrays import Array, frozen, per_row, positive
 from wbc.errors import InputError
 
 __all__ = ["PD", "Damper", "Law", "SaturatedPD"]
+
+FLOAT = np.dtype(np.float64)
 
 
 class _Settled:
@@ -94,6 +97,9 @@ class SaturatedPD(_Settled, Law):
         speed: largest wanted speed [m/s or rad/s].
         acceleration: largest wanted acceleration [m/s^2 or rad/s^2].
 
+    Attributes:
+        gains: (4,) kp, kd, speed, acceleration, for `wbc.approach`.
+
     Raises:
         InputError: a number is not greater than 0.
     """
@@ -103,18 +109,16 @@ class SaturatedPD(_Settled, Law):
         self.damping = per_row(2.0 * np.sqrt(self.stiffness), "damping")
         self.speed = positive(speed, "speed")
         self.largest = positive(acceleration, "acceleration")
+        kp, kd = float(self.stiffness), float(self.damping)
+        gains = [kp, kd, self.speed, self.largest]
+        self.gains = frozen(gains, (4,), "gains")
 
     def acceleration(self, error: Array, rate: Array) -> Array:
         """-kd (de/dt - v_d), v_d = -(kp / kd) e, both shortened."""
-        stoppable = np.sqrt(self.largest * np.linalg.norm(error))
-        speed = min(self.speed, float(stoppable))
-        wanted = _shortened(-self.stiffness / self.damping * error, speed)
-        return _shortened(self.damping * (wanted - rate), self.largest)
+        error, rate = np.array(error, FLOAT), np.array(rate, FLOAT)
+        wish = np.empty(error.size)
+        approach(error, rate, self.gains, wish)
+        return wish
 
     def __repr__(self) -> str:
         return f"SaturatedPD({self.stiffness}, {self.speed}, {self.largest})"
-
-
-def _shortened(x: Array, longest: float) -> Array:
-    size = float(np.linalg.norm(x))
-    return x if size <= longest else longest / size * x

@@ -15,9 +15,11 @@ from wbc.kernel import WORLD, Kernel
 from wbc.pointers import address_of
 from wbc.state import State
 
-__all__ = ["Place", "Program"]
+__all__ = ["ENTRY", "Place", "Program"]
 
 SCRATCH = 96
+ENTRY = 11
+"""Numbers that describe a task; read by compiled code (`wbc.compiled`), too."""
 NONE, BY_ITSELF = -1, -2
 """In place of a frame's index: there is none; one that moves by itself."""
 
@@ -91,7 +93,7 @@ class Program:
 def _entry(place: Place, names: Sequence[str]) -> list[int]:
     """One row of the program."""
     kernel = place.kernel
-    moving, frames = kernel.moving, [0, NONE]
+    moving, law, frames = kernel.moving, kernel.approach, [0, NONE]
     for i, name in enumerate((place.frame, place.second)):
         if name == WORLD and moving is not None:
             frames[i] = BY_ITSELF
@@ -109,4 +111,5 @@ def _entry(place: Place, names: Sequence[str]) -> list[int]:
         table.size,
         frames[1],
         0 if moving is None else address_of(moving),
+        0 if law is None else address_of(law),
     ]

@@ -10,7 +10,7 @@ import pinocchio as pin
 
 from wbc.arrays import Array
 from wbc.errors import UnknownName
-from wbc.frames import FrameState
+from wbc.frames import Frames, FrameState
 
 if TYPE_CHECKING:
     from wbc.robot import Robot
@@ -42,8 +42,8 @@ class State:
     """
 
     __slots__ = (
-        "M", "_advanced", "_frames", "_moved", "_zero", "commanded", "data", "dt", "h",
-        "q", "robot", "t", "v", "wrenches",
+        "M", "_advanced", "_blocks", "_flat", "_frames", "_moved", "_still", "_zero",
+        "commanded", "data", "dt", "h", "q", "robot", "t", "v", "wrenches",
     )  # fmt: skip
 
     def __init__(self, robot: Robot, dt: float) -> None:
@@ -52,6 +52,9 @@ class State:
         self.M, self.h = self.data.M, self.data.nle
         self._zero = np.zeros(robot.nv)
         self._frames: dict[str, FrameState] = {}
+        self._flat: dict[str, Array] = {}
+        self._blocks: dict[str, Frames] = {}
+        self._still: pin.Data | None = None
         self._advanced: dict[int, Array] = {}
         self.commanded: Array | None = None
         self._moved = False
@@ -68,6 +71,7 @@ class State:
         pin.crba(model, data, q, IN_WORLD)  # also computes the joints' Jacobian
         pin.nonLinearEffects(model, data, q, v)
         self._frames.clear()
+        self._flat.clear()
         self._advanced.clear()
         self._moved = False
 
@@ -84,6 +88,26 @@ class State:
         if known is None:
             known = self._frames[name] = self._compute(self.robot.frame_id(name))
         return known
+
+    def flat(self, name: str) -> Array:
+        """The same in one array (24 + 6 n,), as compiled code reads it (`wbc.frames`).
+
+        It holds until the next instant, which overwrites it.
+
+        Raises:
+            UnknownName: the robot has no such frame.
+        """
+        known = self._flat.get(name)
+        if known is None:
+            block = self._blocks.get(name) or self._block(name)
+            known = self._flat[name] = block.update()[0]
+        return known
+
+    def _block(self, name: str) -> Frames:
+        robot = self.robot
+        block = Frames(robot.model, self.data, [name], [robot.frame_id(name)])
+        self._blocks[name] = block
+        return block
 
     def position(self, name: str) -> Array:
         """Origin (3,) of a frame in the world [m]; cheap where no more is wanted.
@@ -134,9 +158,10 @@ class State:
 
     def gravity(self) -> Array:
         """Gravity torques (n,) [Nm]."""
-        return np.array(
-            pin.computeGeneralizedGravity(self.robot.model, self.data, self.q)
-        )
+        model = self.robot.model
+        if self._still is None:  # Pinocchio overwrites what frames are computed from
+            self._still = model.createData()
+        return np.array(pin.computeGeneralizedGravity(model, self._still, self.q))
 
     def _compute(self, index: int) -> FrameState:
         model, data = self.robot.model, self.data

@@ -1,4 +1,4 @@
-"""Directions with tiny images, which projection and certificate once took for others."""
+"""Tiny images of directions, which projection and certificate once took for more."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def felt(size: float) -> dict[str, np.ndarray]:
 
 def held(task: HybridForceMotion) -> float:
     """The integral term, from what it adds to the force that is asked for."""
-    return float(task._now.held[0])
+    return float(task._held[0])
 
 
 def test_the_integral_moves_once_a_tick_and_forgets_on_reset():
