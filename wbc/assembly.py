@@ -11,8 +11,10 @@ from wbc.inertia import factorise
 from wbc.pointers import floats_at, integers_at, matrix
 from wbc.vectors import add_scaled, finite, fours
 
-__all__ = ["assemble", "kept", "measured"]
+__all__ = ["NOTHING", "assemble", "kept", "measured"]
 
+NOTHING = 1e-13
+"""Round-off of Jacobians, in SI units: a stretched arm has no such direction left."""
 BEYOND, TINY = 1e-4, 1e-8
 """Shares of a torque's bound and of the largest torque; outside by more is no
 round-off."""
@@ -72,7 +74,8 @@ def _motion_row(
 ) -> None:
     """A row (n,) on vdot; on y it is a U.
 
-    Of a row about one joint, what never changes is 0 already.
+    Of a row about one joint, what never changes is 0 already. Coefficients that are
+    `NOTHING` count as 0; not so NaN.
     """
     n = raw.size
     if joint >= 0:
@@ -82,8 +85,9 @@ def _motion_row(
         return
     ay[:] = 0.0
     for k in range(n):
-        a[k] = weight * raw[k]
-        if a[k] != 0.0:
+        something = not abs(raw[k]) <= NOTHING
+        a[k] = weight * raw[k] if something else 0.0
+        if something:
             add_scaled(a[k], U[k], ay, fours(k), n)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from wbc.analysis.data import Analysis, Dependency, LevelAnalysis, Metric
 from wbc.arrays import Array, positive
+from wbc.assembly import NOTHING
 from wbc.checks import expect, known
 from wbc.errors import SolverError
 from wbc.linalg import RANK_TOLERANCE, factorise, norm
@@ -139,6 +140,8 @@ def _rows(
     units = task.wish_units(len(names))
     if task.space == "torque":  # tau = M vdot + h
         A, wish = A @ state.M, wish - A @ state.h
+    else:
+        A = np.where(np.abs(A) <= NOTHING, 0.0, A)  # as solvers see it
     equal = rows.lower == rows.upper
     if not np.isfinite(A).all() or np.isnan([rows.lower, rows.upper]).any():
         raise SolverError(f"task '{task.name}' wrote a row that is not finite.", level)
