@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tasks.kernels.paths import locate, write_point
+from tasks.kernels.nearest import locate, write_point
 from wbc.arrays import Array, frozen, number
 from wbc.errors import InputError, shown
 
@@ -42,7 +42,7 @@ class Path(ABC):
 
     Attributes:
         length: s runs from 0 to here [m]; infinite for an unbounded line.
-        table: what the kernels of `tasks.kernels.paths` read of it.
+        table: what the kernels of `tasks.kernels.nearest` read of it.
         on: what carries it, None for the world.
     """
 
