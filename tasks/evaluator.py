@@ -44,7 +44,7 @@ class Code(IntEnum):
     CLEARANCE = 12
 
 
-@compiled
+@inner
 def evaluate(
     code: int,
     p: Array,

@@ -33,6 +33,15 @@ class _Whole(JITCodeLibrary):
     vectors never reach their fast part here, and are many times larger.
     """
 
+    calls: tuple[Any, ...] = ()
+    """Libraries that must be taken along with this one."""
+
+    def add_linking_library(self, library: Any) -> None:
+        """Take a library and what it calls: each once, not within every caller."""
+        for one in (library, *getattr(library, "calls", ())):
+            if one not in self._linking_libraries:
+                super().add_linking_library(one)
+
     def _optimize_final_module(self) -> None:
         passes, builder = self._codegen._module_pass_manager(
             loop_vectorize=False, slp_vectorize=True
@@ -52,7 +61,12 @@ class _Kernel(_Whole):
 
 
 class _Part(_Kernel):
-    """Code as it was typed."""
+    """Code as it was typed, without that of what it calls."""
+
+    def finalize(self) -> None:
+        """Link nothing: whoever takes this takes what it calls, too."""
+        self.calls, self._linking_libraries = tuple(self._linking_libraries), []
+        super().finalize()
 
     def _optimize_functions(self, module: Any) -> None:
         module.data_layout = self._codegen._data_layout
@@ -152,7 +166,13 @@ class _AsPart(_AsWhole):
     into = _IntoPart
 
 
-OVERRIDDEN = ("_optimize_functions", "_optimize_final_module", "_finalize_final_module")
+OVERRIDDEN = (
+    "_optimize_functions",
+    "_optimize_final_module",
+    "_finalize_final_module",
+    "add_linking_library",
+    "finalize",
+)
 KNOWN: Final = all(hasattr(JITCodeLibrary, name) for name in OVERRIDDEN)
 INSIDE: Final = {"cache": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """No door for calls from Python: for tuples of arrays it is larger than many a function
