@@ -235,16 +235,20 @@ def _assemble(
 
 
 def _joint_names(model: pin.Model) -> tuple[str, ...]:
-    odd = [
-        f"'{model.names[i]}' ({model.joints[i].shortname()})"
-        for i in range(1, model.njoints)
-        if model.joints[i].nq != 1 or model.joints[i].nv != 1
-    ]
-    if odd:
-        raise ModelError(
-            f"wbc controls fixed-base robots with hinge and slide joints, not "
-            f"{', '.join(odd)}. Fix the base; give continuous joints limits."
-        )
+    for i in range(1, model.njoints):
+        name, joint = model.names[i], model.joints[i]
+        if (joint.nq, joint.nv) == (2, 1):  # as cosine and sine
+            raise ModelError(
+                f"continuous joint '{name}' has no place for turns without end in q: "
+                'in the file write type="revolute" with limits as wide as the joint '
+                'will turn, such as <limit lower="-6.3" upper="6.3" .../>.'
+            )
+        if (joint.nq, joint.nv) != (1, 1):
+            raise ModelError(
+                f"joint '{name}' has {joint.nv} degrees of freedom: wbc controls "
+                "fixed-base robots with hinge and slide joints. Fix the base; write "
+                "other joints as several hinges."
+            )
     if model.nv == 0:
         raise ModelError("the model has no joints.")
     return tuple(model.names[1:])
