@@ -35,7 +35,8 @@ class Controller:
     """Maps measured (q, v) to joint torques; never sends what is not finite.
 
     When a measurement is not finite, or the resolver fails, it holds the robot by
-    gravity compensation and damping within the torque limits, says so in
+    gravity compensation and damping within the torque limits of the robot, all of
+    them whatever `tasks.TorqueLimits(fraction=...)` says, tells so in
     `Solution.status` and counts it in `failures`.
 
     Args:
