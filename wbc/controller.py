@@ -95,12 +95,8 @@ class Controller:
         forces = self._no_wrench
         try:
             try:  # the quickest copy that refuses complex numbers and dates
-                at: Array = q.astype(  # type: ignore[union-attr]
-                    FLOAT, "C", "same_kind", False
-                )
-                speed: Array = v.astype(  # type: ignore[union-attr]
-                    FLOAT, "C", "same_kind", False
-                )
+                at: Array = q.astype(FLOAT, "C", "same_kind", False)  # type: ignore
+                speed: Array = v.astype(FLOAT, "C", "same_kind", False)  # type: ignore
             except (AttributeError, TypeError):  # lists, too
                 at, speed = numbers(q, "q"), numbers(v, "v")
             t = float(t)

@@ -235,19 +235,16 @@ def _assemble(
 
 
 def _joint_names(model: pin.Model) -> tuple[str, ...]:
-    for i in range(1, model.njoints):
-        name, joint = model.names[i], model.joints[i]
+    for name, joint in zip(model.names[1:], list(model.joints)[1:], strict=True):
         if (joint.nq, joint.nv) == (2, 1):  # as cosine and sine
             raise ModelError(
-                f"continuous joint '{name}' has no place for turns without end in q: "
-                'in the file write type="revolute" with limits as wide as the joint '
-                'will turn, such as <limit lower="-6.3" upper="6.3" .../>.'
+                f"continuous joint '{name}' is not supported: write type=\"revolute\" "
+                'and limits as wide as it will turn, lower="-6.3" upper="6.3".'
             )
         if (joint.nq, joint.nv) != (1, 1):
             raise ModelError(
-                f"joint '{name}' has {joint.nv} degrees of freedom: wbc controls "
-                "fixed-base robots with hinge and slide joints. Fix the base; write "
-                "other joints as several hinges."
+                f"joint '{name}' has {joint.nv} degrees of freedom: wbc controls fixed-"
+                "base robots with hinge and slide joints. Fix the base, or use hinges."
             )
     if model.nv == 0:
         raise ModelError("the model has no joints.")
