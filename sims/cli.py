@@ -20,19 +20,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command.
 
     Returns:
-        0 if everything held, 1 if a bound did not, 2 on bad usage, 130 if the user
-        ended it, 141 if nobody read on what it printed.
+        0 if everything held, 1 if a bound did not, 2 on bad usage or where a file or
+        what is printed cannot be written, 130 if the user ended it, 141 if nobody
+        read on what it printed.
     """
     parser = _parser()
     asked = parser.parse_args(arguments)
     try:
         code: int = asked.action(asked)
-        sys.stdout.flush()
-    except BrokenPipeError:  # as in `wbc list | head -1`; what is left goes nowhere
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        print(end="", flush=True)  # fails here where standard output does
+    except BrokenPipeError:  # as in `wbc list | head -1`
+        _print_no_more()
         return 141
     except WbcError as error:
         sys.stderr.write(f"wbc: {error}\n")
+        return 2
+    except OSError as error:
+        where = error.filename or ("" if _can_print() else "standard output")
+        if not where:
+            raise
+        sys.stderr.write(f"wbc: {where}: {error.strerror or error}.\n")
         return 2
     except WindowClosed:
         sys.stderr.write("\nwbc: the window was closed, nothing was judged\n")
@@ -41,6 +48,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.write("\nwbc: interrupted\n")
         return 130
     return code
+
+
+def _can_print() -> bool:
+    """Whether standard output takes what is left for it; if not, it goes nowhere."""
+    try:
+        print(end="", flush=True)
+    except OSError:
+        _print_no_more()
+        return False
+    return True
+
+
+def _print_no_more() -> None:
+    """Let what is left for standard output go nowhere, or the interpreter complains."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser() -> argparse.ArgumentParser:

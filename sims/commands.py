@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import platform
 import sys
 import time
@@ -25,6 +26,7 @@ from sims.report.snapshot import Image, NoDisplay, write_png
 from sims.resolvers import make_resolver
 from sims.usage import refuse_idle
 from sims.view import check_video
+from sims.writing import check_folder, write
 from wbc import InputError, UnknownName
 
 __all__ = ["audit_model", "bench", "compare", "list_cells", "run_cell"]
@@ -129,13 +131,16 @@ def _folder(out: str) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"--out {out}: {error.strerror or error}") from error
+        raise InputError(f"--out {out}: {error.strerror or error}.") from error
+    check_folder(folder, f"--out {out}")
     return folder
 
 
 def _write(folder: Path, title: str, options: Options, outcome: Outcome) -> None:
-    (folder / "metrics.json").write_text(to_json(outcome.metrics), encoding="utf-8")
-    np.savez_compressed(folder / "log.npz", **outcome.series)
+    write(folder / "metrics.json", to_json(outcome.metrics))
+    log = io.BytesIO()
+    np.savez_compressed(log, **outcome.series)
+    write(folder / "log.npz", log.getvalue())
     facts = {
         "resolver": options.resolver,
         "mismatch": "yes" if options.mismatch else "no",

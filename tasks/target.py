@@ -42,7 +42,12 @@ def take_target(
     moving = (6,) if out.size == 24 else (3,)
     shapes = ((3,), (3, 3), moving, moving)
     try:
-        p, R, V, A = [np.array(value, FLOAT, order="C") for value in given]
+        p, R, V, A = [
+            value.astype(FLOAT, "C", "same_kind", False)  # no complex numbers, no dates
+            if type(value) is np.ndarray
+            else np.array(value, FLOAT, order="C")
+            for value in given
+        ]
         fits = (p.shape, R.shape, V.shape, A.shape) == shapes
     except (TypeError, ValueError, OverflowError):
         fits = False

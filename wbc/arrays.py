@@ -26,6 +26,8 @@ Array: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int_]
 
+REAL = frozenset("biufO")
+"""Kinds of numpy's types: true and false, integers, floating-point numbers, objects."""
 ROTATION_TOLERANCE = 1e-6
 """Read by code that is compiled (`wbc.compiled`), too."""
 
@@ -34,16 +36,31 @@ def numbers(value: Any, what: str) -> Array:
     """A copy of `value` as an array of numbers, of any shape, NaN included.
 
     Raises:
-        InputError: not numeric, ragged, or too large for a floating-point number.
+        InputError: not numeric, complex, ragged, or too large for a floating-point
+            number.
     """
     try:
-        if isinstance(value, str | bytes):
-            raise TypeError  # numpy would read "3"
-        return np.array(value, dtype=np.float64)
+        return np.array(_real(value), dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{what} is not an array of numbers: {shown(value)}."
         ) from error
+
+
+def _real(value: Any) -> NDArray[Any]:
+    """`value` as an array of whatever can stand for real numbers.
+
+    Raises:
+        TypeError: numpy would read numbers from it that nobody wrote, such as "3" as
+            3, 1j as 0, or a date as the seconds since 1970.
+    """
+    array = np.asarray(value)
+    kinds = {array.dtype.kind}
+    if array.dtype.kind == "O":
+        kinds = {np.asarray(x).dtype.kind for x in array.flat}
+    if not kinds <= REAL:
+        raise TypeError
+    return array
 
 
 def frozen(
@@ -89,9 +106,14 @@ def rotation(value: ArrayLike, what: str) -> Array:
     """
     R = frozen(value, (3, 3), what)
     error = float(np.abs(R @ R.T - np.eye(3)).max())
-    if error > ROTATION_TOLERANCE or np.linalg.det(R) < 0:
+    if error > ROTATION_TOLERANCE:
         raise InputError(
             f"{what} is not a rotation matrix: |R R^T - I| is {error:.1e}."
+        )
+    if np.linalg.det(R) < 0:
+        raise InputError(
+            f"{what} is not a rotation matrix but a reflection: its determinant is -1. "
+            "Turn one of its axes round."
         )
     return R
 
@@ -123,8 +145,8 @@ def number(value: Any, what: str) -> float:
 
 def _scalar(value: Any, what: str) -> float:
     try:
-        if isinstance(value, str | bytes) or np.ndim(value) != 0:
-            raise TypeError  # float would read "3", and take what has one element
+        if _real(value).ndim != 0:
+            raise TypeError  # float would take what has one element
         return float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{what} must be a number, got {shown(value)}.") from error

@@ -22,6 +22,7 @@ from scipy.optimize import nnls
 
 from wbc.arrays import Array, positive
 from wbc.cascade import LevelRows
+from wbc.errors import SolverError
 
 __all__ = ["Certificate", "LevelProof", "certify", "slack_of"]
 
@@ -105,6 +106,9 @@ def certify(
         levels: (A, lower, upper) from the top.
         x: the point, in coordinates in which least norm is the last wish.
         solved: each level's slack at the time it was solved.
+
+    Raises:
+        SolverError: numbers too large to calculate with, or no multipliers found.
     """
     n = x.size
     least = (np.eye(n), np.zeros(n), np.zeros(n))
@@ -113,7 +117,15 @@ def certify(
     for k, (A, lower, upper) in enumerate([*levels, least]):
         slack = slack_of(A, x, lower, upper)
         then = solved[k] if solved is not None and k < len(levels) else slack
-        proofs.append(_prove(A, slack, then, above))
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):  # the error says it
+                proofs.append(_prove(A, slack, then, above))
+        except (ValueError, RuntimeError) as error:  # of numpy and scipy
+            raise SolverError(
+                f"optimality of level {k} cannot be proven ({error}): it pulls with "
+                f"{np.abs(slack).max():.1e}. Look for an absurd measurement or target.",
+                k,
+            ) from error
         above.append(_Above.at(A, x, lower, upper))
     return Certificate(tuple(proofs))
 

@@ -8,7 +8,7 @@ from typing import NoReturn, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, positive
+from wbc.arrays import Array, numbers, positive
 from wbc.assembly import measured
 from wbc.checks import expect
 from wbc.errors import InputError, ModelError, SolverError, shown
@@ -35,7 +35,8 @@ class Controller:
     """Maps measured (q, v) to joint torques; never sends what is not finite.
 
     When a measurement is not finite, or the resolver fails, it holds the robot by
-    gravity compensation and damping within the torque limits, says so in
+    gravity compensation and damping within the torque limits of the robot, all of
+    them whatever `tasks.TorqueLimits(fraction=...)` says, tells so in
     `Solution.status` and counts it in `failures`.
 
     Args:
@@ -93,18 +94,23 @@ class Controller:
         """
         forces = self._no_wrench
         try:
-            q, v, t = np.array(q, FLOAT), np.array(v, FLOAT), float(t)
+            try:  # the quickest copy that refuses complex numbers and dates
+                at: Array = q.astype(FLOAT, "C", "same_kind", False)  # type: ignore
+                speed: Array = v.astype(FLOAT, "C", "same_kind", False)  # type: ignore
+            except (AttributeError, TypeError):  # lists, too
+                at, speed = numbers(q, "q"), numbers(v, "v")
+            t = float(t)
             if wrenches:
                 forces = {k: _wrench(k, w) for k, w in wrenches.items()}
         except (TypeError, ValueError, OverflowError, AttributeError) as error:
             raise _unreadable(error, q, v, t, wrenches) from error
-        if q.shape != self._shape or v.shape != self._shape:
+        if at.shape != self._shape or speed.shape != self._shape:
             raise InputError(
-                f"q and v have shapes {q.shape}, {v.shape}; need {self._shape}."
+                f"q and v have shapes {at.shape}, {speed.shape}; need {self._shape}."
             )
         if wrenches and not all(finite(w) for w in forces.values()):
-            return self._hold(q, v, Status.SENSOR_INVALID, NOT_FINITE)
-        return self._tick(q, v, t, forces)
+            return self._hold(at, speed, Status.SENSOR_INVALID, NOT_FINITE)
+        return self._tick(at, speed, t, forces)
 
     def change(
         self,
@@ -218,7 +224,7 @@ def _unreadable(error: Exception, *given: object) -> InputError:
 
 def _wrench(sensor: str, value: ArrayLike) -> Array:
     """A measured wrench (6,), which may be NaN but not of another shape."""
-    wrench = np.array(value, dtype=np.float64)
+    wrench = numbers(value, f"wrench '{sensor}'")
     if wrench.shape != (6,):
         raise InputError(
             f"wrench '{sensor}' has shape {wrench.shape}; it must be (6,)."

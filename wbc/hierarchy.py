@@ -65,6 +65,8 @@ class Level:
         factor = positive(weight, "a task's weight")
         return Level(tuple((task, factor * w) for task, w in self.terms))
 
+    __mul__ = __rmul__
+
     def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
         return Hierarchy.of(self) >> other
 
@@ -139,6 +141,14 @@ class Hierarchy:
             "'+' joins tasks of one level; it cannot join a hierarchy. Write the sum "
             "inside its level: limits >> (a + b) >> c."
         )
+
+    def __mul__(self, weight: object) -> Level:
+        raise InputError(
+            "a weight belongs to a task or a level, not to a hierarchy: "
+            "limits >> 2 * a + b."
+        )
+
+    __rmul__ = __mul__
 
     def __len__(self) -> int:
         return len(self.levels)

@@ -235,16 +235,17 @@ def _assemble(
 
 
 def _joint_names(model: pin.Model) -> tuple[str, ...]:
-    odd = [
-        f"'{model.names[i]}' ({model.joints[i].shortname()})"
-        for i in range(1, model.njoints)
-        if model.joints[i].nq != 1 or model.joints[i].nv != 1
-    ]
-    if odd:
-        raise ModelError(
-            f"wbc controls fixed-base robots with hinge and slide joints, not "
-            f"{', '.join(odd)}. Fix the base; give continuous joints limits."
-        )
+    for name, joint in zip(model.names[1:], list(model.joints)[1:], strict=True):
+        if (joint.nq, joint.nv) == (2, 1):  # as cosine and sine
+            raise ModelError(
+                f"continuous joint '{name}' is not supported: write type=\"revolute\" "
+                'and limits as wide as it will turn, lower="-6.3" upper="6.3".'
+            )
+        if (joint.nq, joint.nv) != (1, 1):
+            raise ModelError(
+                f"joint '{name}' has {joint.nv} degrees of freedom: wbc controls fixed-"
+                "base robots with hinge and slide joints. Fix the base, or use hinges."
+            )
     if model.nv == 0:
         raise ModelError("the model has no joints.")
     return tuple(model.names[1:])

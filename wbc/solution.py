@@ -28,8 +28,9 @@ __all__ = ["Solution"]
 class Solution:
     """Torques of one tick, and everything that can be asked about them.
 
-    Reports and the certificate read the rows of the tick, which the controller
-    rewrites at the next one: ask before that.
+    Reports, explanations, the certificate, `lost` and `active_rows` read the rows of
+    the tick, which the controller rewrites at the next one: ask before that. Torque,
+    acceleration, status and `ranks` stay.
 
     Attributes:
         torque: (n,) joint torques [Nm or N], always finite.
@@ -117,6 +118,8 @@ class Solution:
 
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
+            SolverError: numbers too large to calculate with, as after a measurement
+                of 1e308.
         """
         answer = self._answer
         return self._certify(answer is None or answer.kinetic)
@@ -172,6 +175,8 @@ class Solution:
 
         Raises:
             StaleError: the controller has moved on, or this tick fell back.
+            SolverError: numbers too large to calculate with, as after a measurement
+                of 1e308.
         """
         stack, ramp = self._fresh(), self._ramp and self._ramp[0]
         return explain(stack, self.acceleration, self._certify(True), ramp)

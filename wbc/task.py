@@ -110,6 +110,8 @@ class Task(ABC):
 
         return weight * Level.of(self)
 
+    __mul__ = __rmul__
+
     def __rshift__(self, other: Task | Level | Hierarchy) -> Hierarchy:
         from wbc.hierarchy import Hierarchy
 

@@ -15,6 +15,7 @@ from sims.compare.words import explain
 from sims.metrics import Metric, to_json
 from sims.report.datatable import Table
 from sims.report.page import write_report
+from sims.writing import write as write_file
 
 __all__ = ["SOUND", "bars", "figures", "is_strict", "key_of", "tables", "write"]
 
@@ -109,7 +110,7 @@ def write(study: Study, folder: Path) -> None:
     """Write metrics.json, picture.png and report.html into a folder."""
     write_picture(study, folder / "picture.png")
     judged = bars(study)
-    (folder / "metrics.json").write_text(to_json(judged), encoding="utf-8")
+    write_file(folder / "metrics.json", to_json(judged))
     write_report(
         folder / "report.html",
         title="Projection, weights and strict QP on random stacks",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 from sims.compare.study import Study
 from sims.report.axes import PALETTE
 from sims.report.svg import styled
+from sims.writing import write
 
 __all__ = ["write_picture"]
 
@@ -27,7 +29,11 @@ FREE, ACTIVE = (PALETTE[0], "o", "no limit active"), (PALETTE[1], "s", "limits a
 
 @styled
 def write_picture(study: Study, path: Path) -> None:
-    """Write a PNG: a row a resolver, worst leak, worst gap, median time."""
+    """Write a PNG: a row a resolver, worst leak, worst gap, median time.
+
+    Raises:
+        NotWritten: there is no room for the file, or no right to write it.
+    """
     figure = Figure(figsize=SIZE, dpi=DOTS, layout="constrained")
     panels = figure.subplots(1, 3, sharey=True)
     titles = (
@@ -46,7 +52,9 @@ def write_picture(study: Study, path: Path) -> None:
     handles, names = panels[1].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside lower center", ncols=2, frameon=False)
     canvas: Any = FigureCanvasAgg(figure)
-    canvas.print_png(path)
+    drawn = io.BytesIO()
+    canvas.print_png(drawn)
+    write(path, drawn.getvalue())
 
 
 def _panel(axes: Axes, study: Study, indicator: str) -> None:

@@ -26,6 +26,7 @@ from sims.report.datatable import Table, as_text
 from sims.report.figures import time_series
 from sims.report.page import write_report
 from sims.report.runs import CAPTION, compared_figures
+from sims.writing import write
 
 __all__ = ["STUDIES"]
 
@@ -84,7 +85,7 @@ def _conclude(judged: Sequence[Metric]) -> None:
 def _write(
     found: Sequence[Passage], judged: Sequence[Metric], options: Options, folder: Path
 ) -> None:
-    (folder / "metrics.json").write_text(to_json(judged), encoding="utf-8")
+    write(folder / "metrics.json", to_json(judged))
     write_report(
         folder / "report.html",
         title="Changing hierarchies at run time",

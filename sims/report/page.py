@@ -11,6 +11,7 @@ from sims.metrics import Metric, format_value, to_json, verdict
 from sims.report.cards import Drawing, cards, folded
 from sims.report.datatable import Table, as_html
 from sims.report.snapshot import Image, data_url
+from sims.writing import write
 
 __all__ = ["write_report"]
 
@@ -74,6 +75,7 @@ def write_report(
 
     Raises:
         InputError: metrics of the same name, or a figure that is not one SVG element.
+        NotWritten: there is no room for the page, or no right to write it.
     """
     to_json(metrics)  # refuses names that occur twice
     tables = _metrics(metrics) + _facts(facts or {})
@@ -89,7 +91,7 @@ def write_report(
         + folded("Runs, level by level", how_to_read, runs)
         + "".join(map(as_html, annex)),
     )
-    Path(path).write_text(page, encoding="utf-8")
+    write(path, page)
 
 
 def _verdict(metrics: Sequence[Metric]) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
+from sims.writing import write
 from wbc.errors import InputError, WbcError
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ def write_png(path: str | Path, image: Image) -> None:
 
     Raises:
         InputError: another shape or another type of number.
+        NotWritten: there is no room for the file, or no right to write it.
     """
     import PIL.Image
 
@@ -73,7 +75,9 @@ def write_png(path: str | Path, image: Image) -> None:
             f"a picture is (height, width, 3) of uint8, not {pixels.shape} of "
             f"{pixels.dtype}."
         )
-    PIL.Image.fromarray(pixels).save(path, format="PNG")
+    buffer = io.BytesIO()
+    PIL.Image.fromarray(pixels).save(buffer, format="PNG")
+    write(path, buffer.getvalue())
 
 
 def data_url(image: Image) -> str:

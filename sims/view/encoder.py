@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any, Final, final
 
 from sims.report.snapshot import Image
+from sims.writing import beside, check_folder, place
 from wbc.errors import InputError, WbcError
 
 __all__ = ["RATE", "Encoder", "NoVideo", "check_path"]
@@ -32,20 +31,16 @@ def check_path(path: str | Path) -> Path:
         InputError: no .mp4, a folder that does not exist, or one that is read-only.
         NoVideo: the package that encodes is not installed.
     """
-    place = Path(path)
-    if place.suffix.lower() != ".mp4":
+    film = Path(path)
+    if film.suffix.lower() != ".mp4":
         raise InputError(f"--video {path}: must end in .mp4, the only format written.")
-    if not place.parent.is_dir():
-        raise InputError(f"--video {path}: there is no folder '{place.parent}'.")
-    if place.is_dir():
+    if not film.parent.is_dir():
+        raise InputError(f"--video {path}: there is no folder '{film.parent}'.")
+    if film.is_dir():
         raise InputError(f"--video {path}: is a folder.")
     _codec()
-    try:
-        with tempfile.NamedTemporaryFile(dir=place.parent):
-            pass
-    except OSError as error:
-        raise InputError(f"--video {path}: {error.strerror or error}.") from error
-    return place
+    check_folder(film.parent, f"--video {path}")
+    return film
 
 
 def _codec() -> Any:
@@ -87,13 +82,9 @@ class Encoder:
     def __init__(self, path: str | Path, width: int, height: int) -> None:
         self.path, self.count = check_path(path), 0
         self._av = _codec()
-        handle, name = tempfile.mkstemp(
-            dir=self.path.parent, prefix=f".{self.path.stem}-", suffix=".mp4"
-        )
-        os.close(handle)
-        self._beside = Path(name)
+        self._beside = beside(self.path)
         self._file = self._av.open(
-            name, "w", format="mp4", options={"movflags": "+faststart"}
+            str(self._beside), "w", format="mp4", options={"movflags": "+faststart"}
         )
         self._stream = self._file.add_stream(CODEC, rate=RATE, options=OPTIONS)
         self._stream.width, self._stream.height = width, height
@@ -130,7 +121,7 @@ class Encoder:
                 self._write(None)
             self._close()
             if self.count:
-                self._place()
+                place(self._beside, self.path)
         finally:
             self._beside.unlink(missing_ok=True)
 
@@ -139,13 +130,6 @@ class Encoder:
             self._file.close()
         except self._av.FFmpegError as error:
             raise NoVideo(f"--video {self.path}: {error}") from error
-
-    def _place(self) -> None:
-        """With the rights of any written file, which mkstemp withholds."""
-        mask = os.umask(0)
-        os.umask(mask)
-        self._beside.chmod(0o666 & ~mask)
-        self._beside.replace(self.path)
 
     def abandon(self) -> None:
         """Leave nothing behind."""

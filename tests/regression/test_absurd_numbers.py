@@ -8,8 +8,8 @@ import pickle
 import numpy as np
 import pytest
 
-from robots import racer
-from tasks import FramePosition, JointLimits, Posture, TorqueLimits
+from robots import lwr4, racer
+from tasks import FramePose, FramePosition, JointLimits, Posture, TorqueLimits
 from tests.tolerances import PROOF_OF_INEQUALITIES, TORQUE
 from wbc import (
     Controller,
@@ -17,6 +17,7 @@ from wbc import (
     HierarchicalQP,
     InputError,
     NullSpace,
+    SolverError,
     Status,
     WeightedQP,
     resolve,
@@ -48,6 +49,20 @@ def test_a_velocity_beyond_all_reason_breaks_no_torque_limit(resolver, speed):
     assert solution.status is Status.SOLVER_FAILED
     assert "too large to calculate with" in solution.message
     assert controller(ARM.q_home, over(1, 0.0)).status is Status.SOLVED
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("name", ["certificate", "explain"])
+def test_what_cannot_be_proven_after_absurd_readings_is_an_error_of_ours(name):
+    arm = lwr4.load()
+    hold = FramePose("flange", [1.0, 0.0, 1.0], np.eye(3))
+    controller = Controller(arm, TorqueLimits() >> hold >> Posture())
+    q = arm.q_home.copy()
+    q[0] = 1e308
+    solution = controller(q, np.zeros(arm.nv))
+    assert solution.ok
+    with pytest.raises(SolverError, match=r"cannot be proven.*absurd measurement"):
+        getattr(solution, name)()
 
 
 def test_a_target_beyond_all_reason_breaks_no_torque_limit():

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import itertools
 import os
-import resource
 import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 import av
 import mujoco
@@ -22,6 +20,7 @@ from sims.registry import cell_names, find_demo
 from sims.view import Display, NoVideo, WindowClosed, offscreen
 from sims.view.encoder import RATE, Encoder
 from sims.view.offscreen import HEIGHT, WIDTH
+from tests.room import little_room
 
 SECONDS = {"cutting": 0.4, "welding": 0.1}
 """Of each job of a cell; others have so many jobs that 0.04 s of each will do."""
@@ -157,21 +156,6 @@ def add_noise(encoder: Encoder, pictures: int) -> None:
     rng = np.random.default_rng(0)
     for _ in range(pictures):
         encoder.add(rng.integers(0, 255, (48, 64, 3), dtype=np.uint8))
-
-
-@contextmanager
-def little_room() -> Iterator[None]:
-    """Files of this process may grow to 5 kB only, as on a disk that is full.
-
-    Around no more than what is tested: the limit is the test runner's, too, which
-    could not write a line to a longer log.
-    """
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_a_film_without_room_is_one_error_and_leaves_nothing(tmp_path):

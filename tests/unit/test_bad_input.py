@@ -29,6 +29,8 @@ ABSURD: Final[dict[str, Any]] = {
     "mapping": {},
     "ragged": [[1.0], [1.0, 2.0]],
     "misshapen": np.ones((2, 5)),
+    "complex": 1j * np.ones(6),
+    "dates": np.zeros(6, "datetime64[s]"),
 }
 SIGNED: Final = {"-1"}
 LEGITIMATE: Final[dict[tuple[str, str], set[str]]] = {

@@ -100,6 +100,38 @@ def test_lists_serve_as_measurements():
     assert controller()(HOME.tolist(), [0.0] * N).ok
 
 
+@pytest.mark.parametrize("kind", [np.float32, np.int64, object, ">f8"])
+def test_any_real_numbers_serve_as_measurements(kind):
+    wanted = controller()(STILL, STILL).torque
+    np.testing.assert_allclose(controller()(*2 * [STILL.astype(kind)]).torque, wanted)
+
+
+@pytest.mark.parametrize("name", ["q", "v"])
+@pytest.mark.parametrize(
+    "odd",
+    [
+        STILL + 1j,
+        (STILL + 1j).astype(object),
+        [np.complex128(1j)] * N,
+        STILL.astype("datetime64[s]"),
+        STILL.astype("timedelta64[s]"),
+        STILL.astype(str),
+        ["0"] * N,
+    ],
+    ids=["complex", "objects", "list", "dates", "durations", "texts", "strings"],
+)
+def test_what_numpy_would_bend_into_numbers_is_refused_by_name(odd, name):
+    with pytest.raises(InputError, match=f"^{name} is not an array of numbers"):
+        controller()(**{"q": HOME, "v": STILL, name: odd})
+
+
+def test_a_measurement_is_copied():
+    """Arrays of a subclass, or of any layout, too."""
+    q = np.ma.masked_array(HOME[::-1].copy())[::-1]
+    expected = controller()(HOME, STILL).torque
+    np.testing.assert_allclose(controller()(q, STILL).torque, expected, atol=1e-12)
+
+
 def test_a_single_task_serves_as_a_hierarchy():
     assert Controller(seven_axis(), Posture())(HOME, STILL).ok
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import subprocess
+import sys
 from importlib.metadata import (
     PackageNotFoundError,
     distribution,
@@ -74,3 +76,12 @@ def test_one_distribution_provides_the_four_packages():
     assert {name: set(provided.get(name, ())) for name in PACKAGES} == {
         name: {"wbc"} for name in PACKAGES
     }
+
+
+def test_modules_of_robots_are_there_without_an_import_of_their_own():
+    code = (
+        "import sys, robots; assert 'wbc' not in sys.modules; "
+        "robots.compose.load; robots.lwr4.load; sys.exit(hasattr(robots, 'nothing'))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=False)
+    assert done.returncode == 0

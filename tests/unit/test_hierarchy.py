@@ -36,6 +36,17 @@ def test_an_integer_weighs_as_well():
     assert weights(2 * a) == [2.0]
 
 
+def test_a_number_may_stand_on_either_side():
+    assert weights(a * 2) == [2.0]
+    assert weights((a + 2.0 * b) * 0.5) == [0.5, 1.0]
+
+
+@pytest.mark.parametrize("weigh", [lambda h: 2 * h, lambda h: h * 2])
+def test_a_hierarchy_has_no_weight(weigh):
+    with pytest.raises(InputError, match="a weight belongs to a task or a level"):
+        weigh(a >> b)
+
+
 def test_a_number_weighs_every_task_of_a_sum():
     assert weights(0.5 * (a + 2.0 * b)) == [0.5, 1.0]
 

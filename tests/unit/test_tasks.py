@@ -189,6 +189,22 @@ def test_a_target_that_is_no_rotation_is_refused(R):
         tasks.FramePose(TIP, X, R)
 
 
+def test_a_reflection_is_called_one():
+    with pytest.raises(InputError, match="a reflection: its determinant is -1"):
+        tasks.FrameOrientation(TIP, np.eye(3)).set_target(np.diag([1.0, 1.0, -1.0]))
+
+
+@pytest.mark.parametrize("odd", [1j * np.ones(3), np.zeros(3, "datetime64[s]")])
+def test_a_target_that_numpy_would_bend_into_numbers_is_refused(odd):
+    task = tasks.FramePosition(TIP, X)
+    with pytest.raises(InputError, match=r"target of .* is not an array"):
+        task.set_target(odd)
+    with pytest.raises(InputError, match="stiffness"):
+        tasks.FramePosition(TIP, X, stiffness=odd)
+    with pytest.raises(InputError, match="must be a number"):
+        tasks.JointLimits(margin=odd[0])
+
+
 def test_a_still_target_is_what_a_new_one_is():
     task = tasks.FramePosition(TIP, X)
     task.set_target(X, Y, Z)

@@ -52,8 +52,8 @@ def read_mjcf(source: str | Path) -> Mjcf:
     """Read a file, or the XML text itself.
 
     Raises:
-        ModelError: the file is missing or malformed, or it has a trait that
-            Pinocchio would drop in silence.
+        ModelError: the file is missing or malformed, it has a trait that Pinocchio
+            would drop in silence, or there is no room for a temporary file.
     """
     text = _text(source)
     said = Source(text)
@@ -94,13 +94,24 @@ def _model(source: Source, torque: dict[str, float]) -> pin.Model:
 
 
 def _build(tree: ET.Element) -> pin.Model:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "robot.xml"
-        path.write_text(ET.tostring(tree, encoding="unicode"), encoding="utf-8")
-        try:
-            return pin.buildModelFromMJCF(str(path))
-        except Exception as error:  # Pinocchio raises whatever its parser met
-            raise ModelError(f"Pinocchio cannot read the MJCF: {error}") from error
+    text = ET.tostring(tree, encoding="unicode")
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "robot.xml"
+            path.write_text(text, encoding="utf-8")
+            return _parse(path)
+    except OSError as error:
+        raise ModelError(
+            f"no file can be written for Pinocchio to read: {error}. Make room, or set "
+            "the environment variable TMPDIR to another folder."
+        ) from error
+
+
+def _parse(path: Path) -> pin.Model:
+    try:
+        return pin.buildModelFromMJCF(str(path))
+    except Exception as error:  # Pinocchio raises whatever its parser met
+        raise ModelError(f"Pinocchio cannot read the MJCF: {error}") from error
 
 
 def _home(source: Source) -> Array | None:
