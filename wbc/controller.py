@@ -95,8 +95,8 @@ class Controller:
         forces = self._no_wrench
         try:
             try:  # the quickest copy that refuses complex numbers and dates
-                at: Array = q.astype(FLOAT, "C", "same_kind", False)  # type: ignore
-                speed: Array = v.astype(FLOAT, "C", "same_kind", False)  # type: ignore
+                at: Array = q.astype(FLOAT, "C", "same_kind", False)  # type: ignore[union-attr]
+                speed: Array = v.astype(FLOAT, "C", "same_kind", False)  # type: ignore[union-attr]
             except (AttributeError, TypeError):  # lists, too
                 at, speed = numbers(q, "q"), numbers(v, "v")
             t = float(t)
