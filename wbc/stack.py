@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, NoReturn, final
+from typing import NoReturn, final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from wbc.errors import InputError
 from wbc.failure import complain
 from wbc.hierarchy import Hierarchy
 from wbc.inertia import back_substitute, inverse_dynamics
+from wbc.parts import Parts
 from wbc.pointers import address_of
 from wbc.program import Place, Program
 from wbc.robot import Robot
@@ -24,25 +25,9 @@ from wbc.task import Task
 from wbc.term import Term
 from wbc.tick import without_kernels
 
-__all__ = ["Parts", "Stack"]
+__all__ = ["Stack"]
 
 ROWS_ONLY = np.empty(0)
-
-
-class Parts(NamedTuple):
-    """Where things lie in the one array that a compiled tick writes.
-
-    Attributes:
-        torque: (n,) joint torques.
-        vdot: (n,) joint accelerations.
-        slacks: (m,) weighted slack of every row when its own level was solved.
-        ranks: (p,) for each level, how many independent directions it could use.
-    """
-
-    torque: slice
-    vdot: slice
-    slacks: slice
-    ranks: slice
 
 
 @final
@@ -91,9 +76,7 @@ class Stack:
                 m = term.where.stop
             self.levels.append(slice(first, m))
         self._allocate(m, robot.nv)
-        n = robot.nv
-        ends = (n, 2 * n, 2 * n + m, 2 * n + m + len(self.levels))
-        self.parts = Parts(*map(slice, (0, *ends[:-1]), ends))
+        self.parts = Parts.of(robot.nv, m, len(self.levels))
         self.solved = False
         self._program: Program | None = None
         self._state: State | None = None
