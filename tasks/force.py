@@ -97,7 +97,6 @@ class HybridForceMotion(TouchTask):
         S = _selection(selection, name)
         super().__init__(name, "m, N", frame, S.size, SIZE, axes, sensor, sensor_frame)
         self._numbers[SELECTION : SELECTION + S.size] = S
-        self._S = S
         self.claims = tuple(
             f"{kind} of sensor '{sensor}'"
             for kind, rows in (("force", S[:3]), ("moment", S[3:]))
@@ -130,12 +129,11 @@ class HybridForceMotion(TouchTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(target, (3,), f"target of '{self.name}'")
-        v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
-        a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
+        R = self._R_d
         if orientation is not None:
-            self._R_d[:] = rotation(orientation, f"orientation of '{self.name}'")
-        self._target[:] = p, v, a
+            R = rotation(orientation, f"orientation of '{self.name}'")
+        self._aim(target, velocity, acceleration)
+        self._R_d[:] = R
 
     def set_force(self, force: ArrayLike) -> None:
         """Change F_d, (3,) or (6,) in D; motion rows ignore theirs.

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from tasks.base import CatalogueTask
 from tasks.evaluator import Code
-from tasks.target import ORIGIN, POSE, STILL, UPRIGHT, take_target
+from tasks.target import ORIGIN, POINT, POSE, STILL, UPRIGHT, take_target
 from wbc import PD, Robot
 from wbc.arrays import Array
 from wbc.checks import named
@@ -18,8 +18,6 @@ __all__ = ["FrameOrientation", "FramePose", "FramePosition"]
 
 AXES = ("x", "y", "z")
 AT_REST = STILL[:3]
-TARGET = ("target", "target", "target velocity", "target acceleration")
-"""What is given, in messages."""
 
 
 @final
@@ -65,7 +63,7 @@ class FramePosition(CatalogueTask):
             InputError: not of shape (3,) or not finite; the target stays as it was.
         """
         given = (target, UPRIGHT, velocity, acceleration)
-        take_target(self.name, TARGET, given, self._parameters)
+        take_target(self.name, POINT, given, self._parameters)
 
     def parameters(self, robot: Robot) -> Array:
         """Target, its velocity and acceleration (9,), live."""
@@ -121,7 +119,7 @@ class FrameOrientation(CatalogueTask):
             InputError: unusable values; the target stays as it was.
         """
         given = (ORIGIN, target, velocity, acceleration)
-        take_target(self.name, TARGET, given, self._parameters)
+        take_target(self.name, POINT, given, self._parameters)
 
     def parameters(self, robot: Robot) -> Array:
         """Target (9,), its angular velocity and acceleration, live."""

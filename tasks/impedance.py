@@ -49,6 +49,8 @@ class _Compliant(TouchTask):
         critical = 2.0 * np.sqrt(self.mass * self.stiffness)
         given = critical if damping is None else damping
         self.damping = _gain(given, f"damping of '{name}'")
+        settled = np.concatenate([self.mass, self.stiffness, self.damping])
+        self._numbers[GAINS : GAINS + 9] = settled
         self.set_target(target)
         self.set_force(force)
 
@@ -63,10 +65,7 @@ class _Compliant(TouchTask):
         Raises:
             InputError: unusable values; the target stays as it was.
         """
-        p = frozen(target, (3,), f"target of '{self.name}'")
-        v = frozen(velocity, (3,), f"target velocity of '{self.name}'")
-        a = frozen(acceleration, (3,), f"target acceleration of '{self.name}'")
-        self._target[:] = p, v, a
+        self._aim(target, velocity, acceleration)
 
     def set_force(self, force: ArrayLike) -> None:
         """Change h_d (3,) in D, robot on environment [N].
@@ -78,14 +77,6 @@ class _Compliant(TouchTask):
 
     def reset(self) -> None:
         """Nothing is remembered."""
-
-    def _parameters(self) -> Array:
-        """Numbers for the kernels, with the gains as they are now."""
-        p = self._numbers
-        p[GAINS : GAINS + 3] = self.mass
-        p[GAINS + 3 : GAINS + 6] = self.stiffness
-        p[GAINS + 6 : GAINS + 9] = self.damping
-        return p
 
 
 @final
@@ -138,7 +129,7 @@ class Impedance(_Compliant):
         """Write the rows."""
         self._listen(state)
         F, S = state.flat(self.frame), state.flat(self.sensor_frame)
-        impedance(self._parameters(), F, S, self._wrench, self._felt, rows)
+        impedance(self._numbers, F, S, self._wrench, self._felt, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Add J^T h to the torques."""
@@ -190,6 +181,8 @@ class Admittance(_Compliant):
         name = named(name, f"{frame} admittance")
         super().__init__(frame, target, force, gains, axes, sensor, sensor_frame, name)
         self.following = PD(positive(following, "following"))
+        self._numbers[FOLLOWING : FOLLOWING + 3] = self.following.stiffness
+        self._numbers[FOLLOWING + 3 : FOLLOWING + 6] = self.following.damping
         self._memory = np.zeros(MEMORY)
 
     def reset(self) -> None:
@@ -199,10 +192,8 @@ class Admittance(_Compliant):
     def update(self, state: State, rows: Rows) -> None:
         """Write the rows."""
         self._listen(state)
-        p = self._parameters()
-        p[FOLLOWING : FOLLOWING + 3] = self.following.stiffness
-        p[FOLLOWING + 3 : FOLLOWING + 6] = self.following.damping
-        admittance(p, state.flat(self.frame), self._wrench, self._memory, rows)
+        F = state.flat(self.frame)
+        admittance(self._numbers, F, self._wrench, self._memory, rows)
 
     def advance(self, state: State, torque: Array) -> None:
         """Move the reference on by one tick; not by what is not finite."""

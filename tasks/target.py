@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tasks.kernels.target import take
-from wbc.arrays import Array, frozen, rotation
+from wbc.arrays import FLOAT, Array, frozen, rotation
 from wbc.errors import InputError, shown
 
-__all__ = ["ORIGIN", "POSE", "STILL", "UPRIGHT", "take_target"]
+__all__ = ["ORIGIN", "POINT", "POSE", "STILL", "UPRIGHT", "take_target"]
 
-FLOAT = np.dtype(np.float64)
 ORIGIN, UPRIGHT, STILL = np.zeros(3), np.eye(3), np.zeros(6)
 """In place of what a target has not."""
+POINT = ("target", "target", "target velocity", "target acceleration")
 POSE = ("target position", "target orientation", "target twist", "target acceleration")
-"""What a pose and its motion are called in messages."""
+"""What a point or a rotation, a pose, and their motion are called in messages."""
 for _constant in (ORIGIN, UPRIGHT, STILL):
     _constant.flags.writeable = False
 

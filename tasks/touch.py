@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from tasks.kernels.touch import FORCE, TARGET, TARGET_ROTATION
+from tasks.target import POINT, UPRIGHT, take_target
 from wbc import Robot, State, Task
 from wbc.arrays import Array, rotation
 from wbc.checks import text
@@ -63,6 +64,13 @@ class TouchTask(Settled, Task):
         self._heard = False
         if axes is not None:
             self.set_axes(axes)
+
+    def _aim(
+        self, target: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
+    ) -> None:
+        """Move p_d, its velocity and acceleration, (3,) in the world."""
+        given = (target, UPRIGHT, velocity, acceleration)
+        take_target(self.name, POINT, given, self._target.reshape(9))
 
     def set_axes(self, axes: ArrayLike) -> None:
         """Turn the task axes D: (3, 3) R_WD; they count as fixed during a tick.

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from wbc.errors import InputError, shown
 
 __all__ = [
+    "FLOAT",
     "Array",
     "BoolArray",
     "IntArray",
@@ -28,6 +29,7 @@ IntArray: TypeAlias = NDArray[np.int_]
 
 REAL = frozenset("biufO")
 """Kinds of numpy's types: true and false, integers, floating-point numbers, objects."""
+FLOAT = np.dtype(np.float64)
 ROTATION_TOLERANCE = 1e-6
 """Read by code that is compiled (`wbc.compiled`), too."""
 

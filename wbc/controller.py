@@ -8,7 +8,7 @@ from typing import NoReturn, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from wbc.arrays import Array, numbers, positive
+from wbc.arrays import FLOAT, Array, numbers, positive
 from wbc.assembly import measured
 from wbc.checks import expect
 from wbc.errors import InputError, ModelError, SolverError, shown
@@ -24,7 +24,6 @@ from wbc.vectors import finite
 
 __all__ = ["Controller", "resolve"]
 
-FLOAT = np.dtype(np.float64)
 NOT_FINITE = "a measurement is not finite"
 FALLBACK_DAMPING = 10.0
 """Rate [1/s] at which the fallback damps joint velocities."""

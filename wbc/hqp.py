@@ -21,7 +21,6 @@ from wbc.state import State
 
 __all__ = ["HierarchicalQP", "HierarchyResult", "solve_hierarchy"]
 
-SOLVED, INCOMPLETE = Status.SOLVED, Status.INCOMPLETE
 AT_BOUND = 1e-9
 """A row this close to a bound, relative to its value, counts as active."""
 

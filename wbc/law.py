@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from wbc.approach import approach
-from wbc.arrays import Array, frozen, per_row, positive
+from wbc.arrays import FLOAT, Array, frozen, per_row, positive
 from wbc.errors import InputError
 
 __all__ = ["PD", "Damper", "Law", "SaturatedPD"]
-
-FLOAT = np.dtype(np.float64)
 
 
 class _Settled:
